@@ -12,6 +12,7 @@ import sympy
 from coadjoint.derive.lines import equal
 from coadjoint.exact import Field
 from coadjoint.notation.elements import write_element, write_sympy
+from coadjoint.notation.functions import CALLS
 from coadjoint.notation.names import member, name, unit
 from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.trees import write_tree
@@ -288,3 +289,16 @@ def test_a_fraction_over_something_is_one_fraction():
     made = divide(negate(divide(a, b)), c)
     assert (made.latex, made.sign, made.text) == (r"\frac{a}{b\,c}", -1, "a/b/c")
     assert divide(number(Fraction(1, 2)), a).latex == r"\frac{1}{2\,a}"
+
+
+def test_a_hat_stands_over_a_symbol_and_a_wedge_behind_a_product():
+    """No hat stretches over diag(I)^-1 Pi, and one over I alone would be read as another matrix."""
+    pi, inertia = name("Pi", bold=True), name("I", bold=True)
+    hat = CALLS["hat"]
+    assert hat(pi).latex == rf"\widehat{{{pi.latex}}}"
+    product = hat(multiply([inertia, pi]))
+    assert product.text == "hat(I Pi)"
+    assert product.latex == rf"\left({inertia.latex}\,{pi.latex}\right)^{{\wedge}}"
+    assert product.mathml.endswith("<mo>∧</mo></msup>")
+    assert "mover" not in product.mathml
+    assert product.typst.endswith("^(and)")

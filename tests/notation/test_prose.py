@@ -134,7 +134,7 @@ def test_proofs_and_costs_are_set(form, tmp_path):
     made = complete(record, {"claims": [{**claim, "method": "R^2 = 1"}]}, tmp_path)
     text, page = render_document(made), render_document(made, form)
     assert "1 *, 1 -, 1 /" in text
-    assert text.count("-M*diag(m)^2") == 1
+    assert text.count("-M*diag(m)^2") == 2  # told in a sentence, and in the table of verdicts
     assert not re.search(r"M\*|\d [*] *,|R\^2|R\\\^2|1 \*", page)
     product = {"html": ">×</mo>", "latex": r"$1\,{\times}$", "typst": "$1 space.thin times$"}
     assert page.count(product[form]) == 1

@@ -29,13 +29,18 @@ from coadjoint.render.document import (
     render_document,
     split_sides,
 )
-from coadjoint.render.prose import escape_latex, escape_typst, set_prose
+from coadjoint.render.prose import escape_latex, escape_typst, set_accents, set_prose
 from coadjoint.resources import systems_folder
 from tests.constrained import PARTICLE
 from tests.prove.test_declared_charts import PLANE, RATES
 from tests.specs import RIGID_BODY, emitted, spec
 
-ESCAPED = {"text": str, "latex": escape_latex, "html": escape, "typst": escape_typst}
+ESCAPED = {
+    "text": str,
+    "latex": escape_latex,
+    "html": lambda text: escape(set_accents(text)),
+    "typst": escape_typst,
+}
 HOSTILE = (
     "<script>alert(1)</script>",
     "</title><img src=x onerror=alert(1)>",
@@ -487,3 +492,55 @@ def test_words_of_narrow_tables_stay_whole():
     listed = list_rows(rows, 42)
     assert "acceleration" in " ".join(listed).split()
     assert max(map(len, listed)) <= 42 - INDENT
+
+
+@pytest.mark.parametrize(("width", "heads"), [(40, False), (80, True), (100, True)])
+def test_the_table_of_verdicts_is_printed(width, heads):
+    """Every claim with its verdict and its method, in columns, or on a narrow page one by one."""
+    claims = [("claim", "verdict", "method"), ("the energy is conserved", "proved", "normal form")]
+    claims += [("no measure rho(x) dx is invariant", "numerically supported", "9 random points")]
+    section = {"title": "Table of verdicts", "law": "", "kind": "verdicts", "rows": claims}
+    page = {"title": "T", "about": "", "source": "", "description": "", "sections": [section]}
+    text = render_document(page, "text", width)
+    assert max(map(len, text.splitlines())) <= width
+    words = [word for row in claims[1:] for cell in row for word in cell.split()]
+    assert not [word for word in words if text.split().count(word) < words.count(word)]
+    assert ("claim " in text) == heads
+    assert (text.count("  verdict: "), text.count("  method: ")) == ((0, 0) if heads else (2, 2))
+
+
+@pytest.mark.parametrize(
+    ("width", "lines"),
+    [
+        (100, ["        |    Pi1    Pi2", "    Pi1 |      0 -x*Pi3"]),
+        (24, ["        |    Pi1", "        |    Pi2"]),
+        (18, ["Pi1, Pi2:\n", "Pi2, Pi1:\n"]),
+    ],
+)
+def test_a_bracket_fits_the_terminal(width, lines):
+    """In one table, in blocks of columns, or entry by entry."""
+    rows = [("", "Pi1", "Pi2"), ("Pi1", "0", "-x*Pi3"), ("Pi2", "x*Pi3", "0")]
+    page = section_of(table=[[{"text": each} for each in row] for row in rows])
+    page["sections"][0]["law"] = ""
+    text = render_document(page, "text", width)
+    assert max(map(len, text.splitlines())) <= width
+    assert all(line in text for line in lines)
+    assert "-x*Pi3" in text
+
+
+def test_long_products_break_behind_their_signs():
+    """A formula that is longer than a line goes on below, and says the same."""
+    product = "*".join(f"Omega{n}" for n in range(20))
+    line = {"text": f"h = {product}/m", "mathml": ""}
+    text = render_document(section_of(lines=[line]), "text", 40)
+    assert max(map(len, text.splitlines())) <= 40
+    assert f"h={product}/m" in "".join(text.split())
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_names_have_their_accents_on_a_page(form):
+    """Poincare is written as he was, but for a terminal and in what a person types."""
+    page = section_of(words=[("theorem", "Poincare and Ito, route euler-poincare")])
+    text = render_document({**page, "source": "Poincare (1901)"}, form)
+    assert ("Poincaré (1901)" in text) == ("Itô" in text) == (form != "text")
+    assert ESCAPED[form]("euler-poincare") in text

@@ -1,6 +1,7 @@
 """Where the independent variable is no time, it is called what the spec says it is."""
 
 import io
+import re
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError, SpecError
 from coadjoint.explore.records import describe as describe_page
 from coadjoint.pipeline import render
+from coadjoint.solve.events import Event
 from coadjoint.solve.illustrate import describe
 from coadjoint.solve.plot import draw
 from coadjoint.solve.solution import Solution
@@ -85,6 +87,19 @@ def test_datasets_and_frames_name_it(rod):
     assert isinstance(dataset, xarray.Dataset)
     assert dataset["time"].attrs == {"long_name": "arc length", "units": "m"}
     assert rod.to_pandas().index.name == "s"
+
+
+def test_messages_name_it(rod):
+    """Where an event ended a run, where its events are, and where it cannot go on."""
+    crossing = Event(f"m1 - {float(rod['m1'][50])!r}", terminal=True, name="crossing")
+    for method in ("auto", "scipy:DOP853"):
+        ended = kirchhoff_rod.simulate(None, (0, 4), method=method, events=crossing, progress=False)
+        assert re.search(r"ended it at s = \d", ended.message)
+        assert ", s = " in repr(ended.events["crossing"])
+        short = kirchhoff_rod.simulate(None, (0, 4), method=method, max_steps=1, progress=False)
+        assert "steps came only near s = " in short.message
+    short = kapitza_top.simulate([0, 0, 0, 0.1, 0, 0.9], (0, 4), max_steps=1, progress=False)
+    assert "steps came only near t = " in short.message
 
 
 def test_an_explorer_names_it():

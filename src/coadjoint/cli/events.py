@@ -198,13 +198,14 @@ def print_events(solution: Solution) -> None:
     if not solution.events:
         return
     columns = list_columns(solution.events)
+    clock = solution.system.clock[0]
     total, names = len(columns["time"]), list(solution.system.STATE.components)
     axes = [name for name in columns if name.startswith("member")]
     told = {name for each in solution.events.values() for name in _NAME.findall(each.event.formula)}
     told -= {"event", "time", "direction", *axes, *names}
     names += [name for name in columns if name in told]
     if total:
-        shown = ["event", *(f">{axis}" for axis in axes), ">t", "left side"]
+        shown = ["event", *(f">{axis}" for axis in axes), f">{clock}", "left side"]
         shown += [f">{name}" for name in names]
         rows = []
         for n in range(min(total, ROWS)):
@@ -219,4 +220,4 @@ def print_events(solution: Solution) -> None:
             say(f"no event {name!r}")
         first = float(found.undefined.min())
         if first < float("inf"):
-            say(f"event {name!r}: the formula has no finite value at t = {first:.6g}")
+            say(f"event {name!r}: the formula has no finite value at {clock} = {first:.6g}")

@@ -392,7 +392,13 @@ def _print_ends(solution: Solution, kind: str, names: Iterable[str], title: str 
     """First and last values as a table; of observables with the drift of those that are kept."""
     from coadjoint.solve.drift import list_owners, tell_drift
 
-    columns = [kind, ">t = 0", f">t = {solution.time_reached:g}", "unit"]
+    clock = solution.system.clock[0]
+    columns = [
+        kind,
+        f">{clock} = {solution.time[0]:g}",
+        f">{clock} = {solution.time_reached:g}",
+        "unit",
+    ]
     rows = [
         [name, f"{first:.12g}", f"{last:.12g}", solution.unit(name)]
         for name, first, last in _ends(solution, names)

@@ -38,12 +38,14 @@ def symbol(name: str) -> Left:
 
 
 def sign_text(sign: int, text: str) -> str:
-    """A sum, or minus it in brackets.
+    """A law, or minus it, a sum in brackets.
 
-    >>> sign_text(1, "a + b"), sign_text(-1, "a + b")
-    ('a + b', '-(a + b)')
+    >>> sign_text(1, "a + b"), sign_text(-1, "a + b"), sign_text(-1, "a")
+    ('a + b', '-(a + b)', '-a')
     """
-    return text if sign == 1 else f"-({text})"
+    if sign == 1:
+        return text
+    return f"-({text})" if " + " in text else f"-{text}"
 
 
 def rate(name: str) -> Left:

@@ -64,15 +64,21 @@ CALLS: Final[Mapping[str, Callable[..., Written]]] = {
 }
 
 
+#: Marks between vectors and their matrices, by their names in LaTeX, as Typst has them.
+_BETWEEN: Final = {"vee": "or", "wedge": "and"}
+
+
 def raise_mark(base: Written, text: str, mark: str) -> Written:
     """A mark above: of a transpose, of its inverse, a conjugate."""
     own = bracket(base, ATOM)
-    latex = text.replace("T", r"\top").replace("vee", r"\vee")
+    latex, typst = text.replace("T", r"\top"), text.replace("T", "top").replace("*", "ast")
+    if text in _BETWEEN:
+        latex, typst = rf"\{text}", _BETWEEN[text]
     return Written(
         text=f"{own.text}^{text}",
         latex=f"{own.latex}^{{{latex}}}",
         mathml=f"<msup>{own.mathml}<mo>{mark}</mo></msup>",
-        typst=f"{own.typst}^({text.replace('T', 'top').replace('*', 'ast').replace('vee', 'or')})",
+        typst=f"{own.typst}^({typst})",
     )
 
 
@@ -83,6 +89,9 @@ def _exponential(exponent: Written) -> Written:
 
 
 def _hat(vector: Written) -> Written:
+    """The matrix of a vector: a hat over a symbol; a wedge behind what a hat would not cover."""
+    if vector.level < ATOM:
+        return replace(raise_mark(vector, "wedge", "∧"), text=f"hat({vector.text})")
     return Written(
         text=f"hat({vector.text})",
         latex=rf"\widehat{{{vector.latex}}}",

@@ -9,8 +9,9 @@ Read next: `templates/document/text.j2`, the shortest of the three.
 
 from __future__ import annotations
 
+import re
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
 from itertools import groupby
 from typing import Any, Final
@@ -23,7 +24,7 @@ from coadjoint.notation.tex import is_formula, to_mathml
 from coadjoint.notation.written import LONG_LEFT, Written
 from coadjoint.render.prose import ESCAPES, Prose, set_prose
 from coadjoint.render.strict import make_environment
-from coadjoint.render.sums import fit_paper, is_narrow, split_sides
+from coadjoint.render.sums import break_inline, fit_paper, fit_phone, is_narrow, split_sides
 
 FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
@@ -32,6 +33,11 @@ WIDTH: Final = 100
 INDENT: Final = 6
 #: Lines of a section that stay below each other; more stand side by side where they are short.
 LONG: Final = 24
+#: Characters of a column of words in text, at the least, and of a line with two columns of them.
+COLUMN: Final = 14
+TWO_COLUMNS: Final = 64
+#: A blank at which no line ends: no text has this character, which no terminal would show.
+_KEPT: Final = "\x00"
 #: Characters of MathML up to which rates stand on a page twice, in the lead and in their step.
 REPEATED: Final = 20_000
 
@@ -42,7 +48,7 @@ def render_document(document: Mapping[str, Any], form: str = "text", width: int 
     Args:
         document: The fields of a `coadjoint.derive.document.Document`.
         form: ``"text"``, ``"latex"``, ``"html"`` or ``"typst"``.
-        width: Characters of a line of text; formulas without blanks may be longer.
+        width: Characters of a line of text; names may be longer.
 
     >>> section = {"title": "Momenta", "law": "mu = dl/dxi", "law_latex": ""}
     >>> section |= {"lines": (), "words": (), "table": (), "vectors": (), "rows": ()}
@@ -162,8 +168,9 @@ def _environment(form: str, width: int = WIDTH) -> ImmutableSandboxedEnvironment
         "listed": partial(list_rows, width=width),
         "law": write_law,
         "narrow": is_narrow,
+        "with_phones": lambda lines: zip(lines, fit_phone(lines), strict=True),
         "sides": split_sides,
-        "tabulated": tabulate,
+        "tabulated": partial(tabulate, width=width),
         "wrapped": partial(wrap, width=width),
     }
     return made
@@ -179,7 +186,7 @@ def write_law(section: Mapping[str, Any]) -> Markup | str:
     if is_formula(section["law_latex"], section["law"]):
         maths = to_mathml(section["law_latex"])
         if maths is not None:
-            return Markup(maths)  # noqa: S704 - made of elements alone, its letters escaped
+            return Markup(break_inline(maths))  # noqa: S704 - made of elements alone, its letters escaped
     law: str = section["law"]
     return law
 
@@ -187,17 +194,24 @@ def write_law(section: Mapping[str, Any]) -> Markup | str:
 def list_rows(rows: Sequence[Sequence[Any]], width: int = WIDTH) -> list[str]:
     """Rows of words in columns, wrapped where a line would be longer than there is room.
 
+    Where a line has no room for columns, each row is an entry with its heads before its cells.
+
     >>> list_rows([["name", "unit"], ["m", "kg"]])
     ['name  unit', 'm     kg']
+    >>> list_rows([["claim", "verdict"], ["the energy is conserved", "proved"]], 28)
+    ['the energy is conserved', '  verdict: proved']
     """
     texts = [[cell["text"] if isinstance(cell, Mapping) else str(cell) for cell in r] for r in rows]
     if any(isinstance(row[0], Mapping) for row in rows):
         texts = [row[1:] for row in texts]  # a symbol is its name in text
-    widths = [max(len(row[n]) for row in texts) for n in range(len(texts[0]))]
-    columns = zip(*texts, strict=True)
+    room, columns = width - INDENT, [*zip(*texts, strict=True)]
+    widths = [max(map(len, column)) for column in columns]
     words = [max(map(len, " ".join(column).split()), default=0) for column in columns]
-    while sum(widths) + 2 * len(widths) > max(width - INDENT, 3 * len(widths)):
-        wide = [n for n, most in enumerate(widths) if most > words[n]] or range(len(widths))
+    least = [max(word, min(most, COLUMN)) for word, most in zip(words, widths, strict=True)]
+    if sum(least) + 2 * (len(least) - 1) > room:
+        return [line for row in texts[1:] for line in _list_entry(texts[0], row, room)]
+    while sum(widths) + 2 * (len(widths) - 1) > room:
+        wide = [n for n, most in enumerate(widths) if most > least[n]]
         widths[max(wide, key=widths.__getitem__)] -= 1
     listed = list[str]()
     for row in texts:
@@ -207,6 +221,13 @@ def list_rows(rows: Sequence[Sequence[Any]], width: int = WIDTH) -> list[str]:
             line = "  ".join(part.ljust(w) for part, w in zip(parts, widths, strict=True))
             listed.append(line.rstrip())
     return listed
+
+
+def _list_entry(heads: Sequence[str], row: Sequence[str], room: int) -> list[str]:
+    """A row of a table without columns: its first cell, and the others below it by their heads."""
+    first, *others = row
+    told = [f"  {head}: {cell}" for head, cell in zip(heads[1:], others, strict=True) if cell]
+    return [*wrap(first, 0, room), *(line for each in told for line in wrap(each, 4, room))]
 
 
 def choose_columns(rows: Sequence[Sequence[Any]]) -> str:
@@ -248,13 +269,33 @@ def wrap(text: str, indent: int = 0, room: int = 0, width: int = WIDTH) -> list[
     >>> wrap("one\ntwo")
     ['one two']
     """
+    most = max(room or width - indent, 1)
     return textwrap.wrap(
-        text,
-        max(room or width - indent, 1),
+        _break_products(text, most - indent),
+        most,
         subsequent_indent=" " * indent,
         break_long_words=False,
         break_on_hyphens=False,
     )
+
+
+def _break_products(text: str, room: int) -> str:
+    """A text in which products that are longer than a line have blanks behind some of their signs.
+
+    >>> _break_products("x = a11*b22*c33/(d44*e55)", 8)
+    'x = a11*b22* c33/ (d44* e55)'
+    """
+    words = text.split(" ")
+    for n, word in enumerate(words):
+        if len(word) <= room:
+            continue
+        parts = [""]
+        for factor in re.findall(r"[^*/]+[*/]*|[*/]+", word):
+            if parts[-1] and len(parts[-1] + factor) > room:
+                parts.append("")
+            parts[-1] += factor
+        words[n] = " ".join(parts)
+    return " ".join(words)
 
 
 def align(lines: Sequence[Mapping[str, str]], width: int = WIDTH) -> list[str]:
@@ -286,40 +327,92 @@ def count_abreast(lines: Sequence[Mapping[str, str]], width: int = WIDTH) -> int
     return max(1, min(4, (width - INDENT) // (widest + 3)))
 
 
-def tabulate(rows: Sequence[Sequence[Mapping[str, str]]]) -> list[str]:
-    """A table with a line under its heads.
+def tabulate(rows: Sequence[Sequence[Mapping[str, str]]], width: int = WIDTH) -> list[str]:
+    """A table with a line under its heads; on a narrow page in blocks of columns.
 
-    >>> tabulate([[{"text": t} for t in row] for row in (("", "H", "X"), ("H", ".", "2*X"))])
+    Where not even one column has room, its entries but 0 are lines, with both heads before them.
+
+    >>> table = [[{"text": t} for t in row] for row in (("", "H", "X"), ("H", ".", "2*X"))]
+    >>> tabulate(table)
     ['   |   H   X', '---+--------', ' H |   . 2*X']
+    >>> tabulate(table, 14)
+    ['   |   H', '---+----', ' H |   .', '', '   |   X', '---+----', ' H | 2*X']
+    >>> tabulate(table, 12)
+    ['H, X: 2*X']
     """
-    first = max(len(row[0]["text"]) for row in rows)
-    width = max(len(cell["text"]) for row in rows for cell in row[1:])
-    texts = [
-        f" {row[0]['text']:<{first}} |" + "".join(f" {cell['text']:>{width}}" for cell in row[1:])
-        for row in rows
-    ]
-    rule = "-" * (first + 2) + "+" + "-" * (max(map(len, texts)) - first - 3)
-    return [texts[0], rule, *texts[1:]]
+    heads, *others = [[cell["text"] for cell in row] for row in rows]
+    first = max(len(row[0]) for row in (heads, *others))
+    cell = max(len(text) for row in (heads, *others) for text in row[1:])
+    number = (width - INDENT - first - len("  |")) // (cell + 1)
+    if number < 1:
+        named = [(f"{row[0]}, {head}", text) for row in others for head, text in _pair(heads, row)]
+        told = [f"{place}: {text}" for place, text in named if text not in ("0", ".")]
+        return [line for each in told for line in wrap(each, 4, width - INDENT)]
+    listed = list[str]()
+    for start in range(1, len(heads), number):
+        block = [[row[0], *row[start : start + number]] for row in (heads, *others)]
+        texts = [
+            f" {head:<{first}} |" + "".join(f" {text:>{cell}}" for text in entries)
+            for head, *entries in block
+        ]
+        rule = "-" * (first + 2) + "+" + "-" * (len(texts[0]) - first - 3)
+        listed += [*([""] if listed else []), texts[0], rule, *texts[1:]]
+    return listed
+
+
+def _pair(heads: Sequence[str], row: Sequence[str]) -> Iterable[tuple[str, str]]:
+    """The entries of a row behind its head, each with the head of its column."""
+    return zip(heads[1:], row[1:], strict=True)
 
 
 def describe(words: Sequence[Sequence[str]], width: int = WIDTH) -> list[str]:
     """Names with what is said of them in a second column, long texts continued.
 
+    On a narrow page a text that has no room behind its name stands below it.
+
     >>> describe([("rank", "2"), ("Killing form", "3 minus")])
     ['rank          2', 'Killing form  3 minus']
+    >>> describe([("rank", "2"), ("theorem", "that of Euler and Poincare")], 36)
+    ['rank  2', 'theorem', '  that of Euler and Poincare']
     """
-    return _columns(words, "  ", width)
+    if width >= TWO_COLUMNS:
+        return _columns(words, "  ", width)
+    room, listed = width - INDENT, list[str]()
+    for left, right in words:
+        if len(whole := f"{left}  {right}".rstrip()) <= room:
+            listed.append(whole)
+        else:
+            listed += [*wrap(left, 2, room), *wrap(f"  {right}", 2, room)]
+    return listed
 
 
 def _columns(sides: Sequence[Sequence[str]], joint: str, width: int) -> list[str]:
-    """Two columns, the second one wrapped; below a left side that is long the right one stands."""
-    longest = min(LONG_LEFT, (width - INDENT) // 2)
+    """Two columns, the second one wrapped; a right side stands below a left one that is long.
+
+    So does one with a word that has no room behind the first column.
+    """
+    room = width - INDENT
+    longest = min(LONG_LEFT, room // 2)
     first = max((len(left) for left, _ in sides if len(left) <= longest), default=0)
     listed = list[str]()
     for left, right in sides:
-        if len(left) > longest:
-            listed += wrap(left, 2, width - INDENT)
-            listed += wrap(f"  {joint.strip()} {right}", 4, width - INDENT)
+        word = max(map(len, right.split()), default=0)
+        if len(left) > longest or first + len(joint) + word > room:
+            listed += wrap(left, 2, room)
+            listed += wrap(f"  {joint.strip()} {right}", 4, room)
         else:
-            listed += wrap(f"{left:<{first}}{joint}{right}", first + len(joint), width - INDENT)
+            indent = first + len(joint)
+            whole = f"{left:<{first}}{joint}{_keep_brackets(right, (room - indent) // 2)}"
+            listed += [line.replace(_KEPT, " ") for line in wrap(whole, indent, room)]
     return listed
+
+
+def _keep_brackets(text: str, most: int) -> str:
+    """A text whose short brackets have blanks at which no line ends.
+
+    >>> _keep_brackets("a x (b, c)", 9).replace(_KEPT, "_")
+    'a x (b,_c)'
+    """
+    return re.sub(
+        r"\([^()]*\)", lambda m: m[0].replace(" ", _KEPT) if len(m[0]) <= most else m[0], text
+    )

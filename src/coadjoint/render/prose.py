@@ -21,6 +21,27 @@ from coadjoint.notation.names import name
 from coadjoint.notation.prose import Formula, read_counts, read_prose
 from coadjoint.notation.written import Written
 
+#: Names and words of titles as their languages write them; specs and terminals have plain letters.
+_ACCENTS: Final = {
+    "Poincare": "Poincaré",
+    "Ito": "Itô",
+    "Fasso": "Fassò",
+    "Mecanique": "Mécanique",
+    "fuer": "für",
+    "ueber": "über",
+}
+_PLAIN: Final = re.compile(rf"\b({'|'.join(_ACCENTS)})\b")
+
+
+def set_accents(text: str) -> str:
+    """Text in which well-known names have their accents.
+
+    >>> set_accents("Euler-Poincare")
+    'Euler-Poincaré'
+    """
+    return _PLAIN.sub(lambda found: _ACCENTS[found[0]], make_printable(text))
+
+
 _LATEX_ESCAPES: Final = str.maketrans(
     {character: f"\\{character}" for character in "{}$&#_%"}
     | {
@@ -39,7 +60,7 @@ def escape_latex(text: str) -> str:
     >>> escape_latex(r"\write18{rm}")
     '\\textbackslash{}write18\\{rm\\}'
     """
-    return make_printable(text).translate(_LATEX_ESCAPES)
+    return set_accents(text).translate(_LATEX_ESCAPES)
 
 
 _TYPST_ESCAPES: Final = str.maketrans({c: f"\\{c}" for c in "\\#*_`$<>@[]=-+/~"})
@@ -51,11 +72,12 @@ def escape_typst(text: str) -> str:
     >>> escape_typst("#read('x')")
     "\\#read('x')"
     """
-    return make_printable(text).translate(_TYPST_ESCAPES)
+    return set_accents(text).translate(_TYPST_ESCAPES)
 
 
-#: What keeps words from being commands, by format; HTML is apart, as Jinja escapes it.
+#: What keeps words from being commands, by format; those of HTML are escaped by Jinja.
 ESCAPES: Final[Mapping[str, Callable[[str], str]]] = {
+    "html": set_accents,
     "latex": escape_latex,
     "typst": escape_typst,
 }
@@ -84,7 +106,7 @@ class Prose(Markup):
     @classmethod
     def of(cls, parts: Sequence[Part], plain: str, form: str) -> Prose:
         """Words, escaped, names of code, and formulas of `coadjoint.notation.prose`."""
-        escape = ESCAPES.get(form, _escape_html)
+        escape = _escape_html if form == "html" else ESCAPES[form]
         texts = [escape(p) if isinstance(p, str) else _set(p, form) for p in parts]
         if form == "html":
             texts = _keep_together(parts, texts)
@@ -107,7 +129,7 @@ def _keep_together(parts: Sequence[Part], texts: Sequence[str]) -> list[str]:
 
 def _escape_html(text: str) -> str:
     """Text in which a page sees no element."""
-    return str(escape_html(make_printable(text)))
+    return str(escape_html(set_accents(text)))
 
 
 def _set(formula: Formula | Code, form: str) -> str:

@@ -9,15 +9,32 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 from xml.etree import ElementTree as ET
 
+from coadjoint.notation.written import row
 from coadjoint.render.widths import PAPER, SMALLEST, measure
 
 #: Width of a right side, in sizes of letters, up to which it stays in one piece.
 WHOLE: Final = 12.0
+#: Width of a line of a phone, and the smallest part of the size of letters to be read there.
+PHONE, SMALL = 19.0, 0.65
+#: Room before a sum of several lines, and before a right side below the left one.
+HANGING, INDENT = 2.0, 1.0
 #: Width of an equation up to which two of them stand side by side on paper.
 HALF: Final = 16.0
+
+
+class OnPhone(NamedTuple):
+    """How an equation stands on a phone.
+
+    Attributes:
+        is_below: Whether its right side stands below a left one that is long.
+        part: The part of the size of letters at which it fits.
+    """
+
+    is_below: bool
+    part: float
 
 
 def split_sides(mathml: str) -> tuple[str, str]:
@@ -31,15 +48,32 @@ def split_sides(mathml: str) -> tuple[str, str]:
     >>> made.count("<math"), made.count("> <")
     (3, 2)
     """
-    left, right = _part(mathml)
-    if right is None:
+    left, *pieces = _list_pieces(mathml)
+    if not pieces:
         return "", mathml
-    pieces = list(_split_sum(right))
-    pieces[0] = f'<mo rspace="0.3em">=</mo>{pieces[0]}'
     shown = " ".join(f'<math displaystyle="true"><mrow>{each}</mrow></math>' for each in pieces)
     if len(pieces) > 1:
         shown = f'<span class="sum">{shown}</span>'
     return f'<math displaystyle="true">{left}</math>', shown
+
+
+def break_inline(mathml: str) -> str:
+    """A formula within words, which may break at its sign of equality and those of its sum.
+
+    >>> break_inline("<math><mi>a</mi><mo>=</mo><mi>b</mi></math>")
+    '<math><mi>a</mi></math> <math><mo rspace="0.3em">=</mo><mi>b</mi></math>'
+    """
+    pieces = _list_pieces(mathml)
+    return " ".join(f"<math>{each}</math>" for each in pieces) if pieces[1:] else mathml
+
+
+def _list_pieces(mathml: str) -> list[str]:
+    """The left side of an equation, and the addends of its right one behind the sign."""
+    left, right = _part(mathml)
+    if right is None:
+        return [left]
+    first, *others = _split_sum(right)
+    return [left, f'<mo rspace="0.3em">=</mo>{first}', *others]
 
 
 def fit_paper(mathml: str) -> float:
@@ -56,6 +90,34 @@ def fit_paper(mathml: str) -> float:
     """
     width = _measure_pieces(mathml)
     return 1.0 if width <= PAPER else round(max(SMALLEST, PAPER / width), 2)
+
+
+def fit_phone(lines: Iterable[Mapping[str, str]]) -> list[OnPhone]:
+    """How equations whose signs of equality are in one column stand on a phone.
+
+    >>> short, long = ("<mi>x</mi>" * n for n in (1, 20))
+    >>> one, other = (f"<math>{each}<mo>=</mo><mi>y</mi></math>" for each in (short, long))
+    >>> fit_phone([{"mathml": one}, {"mathml": other}])
+    [OnPhone(is_below=False, part=1.0), OnPhone(is_below=True, part=1.0)]
+    >>> fit_phone([{"mathml": one.replace("y", "y" * 50)}])
+    [OnPhone(is_below=False, part=0.65)]
+    """
+    sides = list[tuple[float, float]]()
+    for line in lines:
+        first, *pieces = (
+            measure(f"<math>{row(each)}</math>") for each in _list_pieces(line["mathml"])
+        )
+        sides.append((first, max(pieces, default=0.0) + HANGING * (len(pieces) > 1)))
+    column = max((left for left, right in sides if right and left <= PHONE / 3), default=0.0)
+    placed = list[OnPhone]()
+    for left, right in sides:
+        is_below = left > PHONE / 3 and right > 0
+        if is_below or not right:
+            part = PHONE / max(left, right + INDENT)
+        else:
+            part = (PHONE - column) / right
+        placed.append(OnPhone(is_below, min(1.0, round(max(SMALL, part), 2))))
+    return placed
 
 
 def is_narrow(section: Mapping[str, Any]) -> bool:

@@ -182,7 +182,7 @@ class Domain:
         self.find_violated(exit_.time, exit_.state)
         value = self._value(exit_.row)
         return (
-            f"{self._problem(exit_.row)} after t = {exit_.time:.12g}, where "
+            f"{self._problem(exit_.row)} after {self.system.clock[0]} = {exit_.time:.12g}, where "
             f"{self._meaning(exit_.row)} is still {value:.6g} and "
             f"{self._values(exit_.row, exit_.state)}"
         )

@@ -102,11 +102,12 @@ class Function(Signal):
         Raises:
             KernelArgumentError: Another shape than ``(m,)``, or no finite number.
         """
-        where, given = f"of the function inputs at t = {time:.12g}", self.function(float(time))
+        place, given = f"at {self.system.clock[0]} = {time:.12g}", self.function(float(time))
+        where = f"of the function inputs {place}"
         if given is None:
             size, wanted = self.system.INPUTS.size, self.system.INPUTS.listed
             raise KernelArgumentError(
-                f"{self.system.name}: the function inputs returns None at t = {time:.12g}; "
+                f"{self.system.name}: the function inputs returns None {place}; "
                 f"expected ({size},): {wanted}, or values by name. Write return before its value.",
                 found="None",
                 expected=[size],
@@ -273,9 +274,9 @@ def _sample(system: System, given: tuple[Any, ...], start: float, end: float) ->
         )
     if not times[0] <= start <= end <= times[-1]:
         raise KernelArgumentError(
-            f"inputs are sampled from t = {times[0]:g} to {times[-1]:g}, and the run is from "
-            f"{start:g} to {end:g}; expected samples over all of it, since interpolation beyond "
-            "its range is refused. Add samples, or shorten the run.",
+            f"inputs are sampled from {system.clock[0]} = {times[0]:g} to {times[-1]:g}, and the "
+            f"run is from {start:g} to {end:g}; expected samples over all of it, since "
+            "interpolation beyond its range is refused. Add samples, or shorten the run.",
             found=[float(times[0]), float(times[-1])],
             expected=[start, end],
         )

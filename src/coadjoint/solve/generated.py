@@ -58,7 +58,7 @@ def simulate(system: System, request: Request) -> Solution:
     batch, n = request.state.shape[1:], system.STATE.size
     run, driven = _gather(system, request)
     if request.seed is not None:
-        check_knots(request, run.inputs.knots)
+        check_knots(system, request, run.inputs.knots)
     now = _drive(system, run, request.start, driven)
     check_starts(system, request, run, now)
     below = find_start(system, run.state[:n].reshape(n, *batch), request.reconstruct)
@@ -309,7 +309,7 @@ def _make_solution(
         inputs = None if signal is None else signal.over(times)
     status = "" if batch else Status(int(run.status[0])).name
     if recording is not None and status == "EVENT":
-        message = recording.explain_end()
+        message = recording.explain_end(system.clock[0])
     else:
         message = tell_endings(run.status) if batch else _explain(system, request, run, course)
     return Solution(
@@ -379,11 +379,12 @@ def _explain(system: System, request: Request, run: Ensemble, course: Course) ->
         return domain.explain_exit(Exit(time, state, domain.find_leaving(time, state, rates)))
     if status == Status.SLIDING and course.kinks is not None:
         return (
-            f"the motion slides along {describe_sliding(course.kinks)} from t = {time:.12g} on: "
+            f"the motion slides along {describe_sliding(course.kinks)} from "
+            f"{system.clock[0]} = {time:.12g} on: "
             "both sides of the kink push it back, or kinks follow one another without end. What it "
             "does there the rates do not say: describe it by a system with this constraint"
         )
-    place = f"near t = {time:.6g}{domain.describe_nearest(time, state)}"
+    place = f"near {system.clock[0]} = {time:.6g}{domain.describe_nearest(time, state)}"
     return {
         Status.NONFINITE: f"rates, or what a step makes of them, are not finite {place}",
         Status.STEP_UNDERFLOW: f"no step was small enough {place}{_advise_dop853(system, request)}"

@@ -42,9 +42,9 @@ class Ending(NamedTuple):
     decided: int
 
 
-def explain_ending(ending: Ending) -> str:
-    """What a Solution says of it."""
-    return f"the event {ending.name!r} ended it at t = {ending.time:.12g}"
+def explain_ending(ending: Ending, clock: str) -> str:
+    """What a Solution says of it, by the symbol of its independent variable."""
+    return f"the event {ending.name!r} ended it at {clock} = {ending.time:.12g}"
 
 
 def take_below(arrays: Mapping[str, Any], name: str) -> dict[str, Any]:

@@ -46,7 +46,7 @@ def take_member(solution: Solution, place: tuple[int, ...]) -> Solution:
         states[:n],
         solution.parameters if shared else solution.parameters[at],
         course.status,
-        "" if course.status == "OK" else f"it stopped at t = {end:.6g}",
+        "" if course.status == "OK" else f"it stopped at {solution.system.clock[0]} = {end:.6g}",
         states[n:] if len(states) > n else None,
         inputs,
         course=course,

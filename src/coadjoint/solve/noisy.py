@@ -100,7 +100,7 @@ def check_no_noise(system: System, method: Any, seed: Any) -> None:
         )
 
 
-def check_knots(request: Request, knots: NDArray[np.float64]) -> None:
+def check_knots(system: System, request: Request, knots: NDArray[np.float64]) -> None:
     """Inputs change their lines at the ends of steps: a step that ended elsewhere would be another.
 
     Raises:
@@ -113,14 +113,14 @@ def check_knots(request: Request, knots: NDArray[np.float64]) -> None:
     if off.any():
         time = float(times[int(off.argmax())])
         raise KernelArgumentError(
-            f"inputs change at t = {time:.12g}, between the ends of steps of {step:.12g}, and "
-            "noise has increments of whole steps; expected inputs at times of whole steps "
-            f"after {request.start:g}, or a function of time.",
+            f"inputs change at {system.clock[0]} = {time:.12g}, between the ends of steps of "
+            f"{step:.12g}, and noise has increments of whole steps; expected inputs at times "
+            f"of whole steps after {request.start:g}, or a function of time.",
             found=time,
         )
 
 
-def check_samples(request: Request) -> None:
+def check_samples(system: System, request: Request) -> None:
     """Samples lie at the ends of steps, between which nothing is known of a path.
 
     Raises:
@@ -134,9 +134,10 @@ def check_samples(request: Request) -> None:
     if off.any():
         time = float(times[int(off.argmax())])
         raise KernelArgumentError(
-            f"the sample at t = {time:.12g} lies between the ends of steps of {step:.12g}, where "
-            "nothing is known of a path with noise; expected times that are whole numbers of steps "
-            f"after {request.start:g}. Or give t as a pair (start, end).",
+            f"the sample at {system.clock[0]} = {time:.12g} lies between the ends of steps of "
+            f"{step:.12g}, where nothing is known of a path with noise; expected times "
+            f"that are whole numbers of steps after {request.start:g}. "
+            "Or give t as a pair (start, end).",
             found=time,
         )
     if request.state[0].size > MEMBERS:

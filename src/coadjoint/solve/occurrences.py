@@ -138,9 +138,9 @@ class Occurrences:
         if not many:
             return f"<no event {name!r}>"
         members = f" of {len(np.unique(self.member))} members" if self.batch else ""
-        first, last = self.time.min(), self.time.max()
-        told = f"{many} events {name!r}{members}, t = {first:g} .. {last:g}"
-        return f"<{told}>" if many > 1 else f"<1 event {name!r}, t = {first:g}>"
+        first, last, clock = self.time.min(), self.time.max(), self.system.clock[0]
+        told = f"{many} events {name!r}{members}, {clock} = {first:g} .. {last:g}"
+        return f"<{told}>" if many > 1 else f"<1 event {name!r}, {clock} = {first:g}>"
 
 
 def join_occurrences(lots: Sequence[Occurrences], batch: tuple[int, ...]) -> Occurrences:

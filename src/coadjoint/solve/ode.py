@@ -84,11 +84,12 @@ class Ode:
         assert signal is not None, "asked for only where there are inputs"
         if isinstance(signal, Previous | Linear):
             first, last = float(signal.times[0]), float(signal.times[-1])
+            clock = self.system.clock[0]
             if not first <= time <= last:
                 raise KernelArgumentError(
-                    f"inputs are sampled from t = {first:g} to {last:g}, and asked for at "
-                    f"t = {time:g}; expected a time between, since interpolation beyond the range "
-                    "is refused.",
+                    f"inputs are sampled from {clock} = {first:g} to {last:g}, and asked for "
+                    f"at {clock} = {time:g}; expected a time between, since interpolation beyond "
+                    "the range is refused.",
                     found=time,
                     expected=[first, last],
                 )

@@ -232,9 +232,9 @@ class Recording:
         """All events by name."""
         return list_occurrences(self._lookout, batch)
 
-    def explain_end(self) -> str:
-        """Which event ended the only trajectory."""
-        return explain_ending(self._endings[-1])
+    def explain_end(self, clock: str) -> str:
+        """Which event ended the only trajectory, by the symbol of the independent variable."""
+        return explain_ending(self._endings[-1], clock)
 
     def make_dense(self, signal: Signal | Array | None, start: float) -> Dense | None:
         """The steps up to where each member came; None if they were not to be kept."""

@@ -121,7 +121,7 @@ def simulate_alone(system: System, request: Request) -> Solution:
     rates, latest = _make_rates(system, packed, target, driving, followed.size)
     rates(times[0], initial)
     if not np.isfinite(latest).all():  # SciPy's choice of a first step would never end
-        reason = f"the rates are not finite at t = {times[0]:g}"
+        reason = f"the rates are not finite at {system.clock[0]} = {times[0]:g}"
         run = times[:1], initial[:, None], "NONFINITE", reason
         return _make_solution(system, packed, driving, run, request)
     with_slopes = name in IMPLICIT and not followed.size
@@ -161,7 +161,7 @@ def simulate_alone(system: System, request: Request) -> Solution:
         )
     ending = trail.finish()
     if ending is not None:
-        run = _cut_at_event(*run[:2], ending)
+        run = _cut_at_event(*run[:2], ending, system.clock[0])
     return _make_solution(system, packed, driving, run, request, trail, made)
 
 
@@ -318,7 +318,7 @@ def _follow(
             if trail.is_needed:
                 ending = trail.add(dense(), before[0], here[0] if end is None else end.time)
                 if ending is not None:
-                    return _cut_at_event(times, states, ending)
+                    return _cut_at_event(times, states, ending, domain.system.clock[0])
             if end is not None:
                 return *_cut_at_exit(times, states, end), "DOMAIN", domain.explain_exit(end)
             reached, steps = after, steps + 1
@@ -329,7 +329,8 @@ def _follow(
                 checkpoint.write_sometimes(solver, states, reached, steps, now=is_end)
     except FloatingPointError:  # from the Jacobian
         latest[:] = np.nan
-    place = f"near t = {solver.t:.6g}{domain.describe_nearest(solver.t, solver.y)}"
+    clock = domain.system.clock[0]
+    place = f"near {clock} = {solver.t:.6g}{domain.describe_nearest(solver.t, solver.y)}"
     came = (times[:reached], states[:, :reached])
     # An evaluation that is not finite spoils those after it in its step, the latest among them.
     if not (np.isfinite(solver.y).all() and np.isfinite(latest).all()):
@@ -344,10 +345,10 @@ def _follow(
     return times, states, "OK", ""
 
 
-def _cut_at_event(times: Array, states: Array, ending: Ending) -> _Run:
+def _cut_at_event(times: Array, states: Array, ending: Ending, clock: str) -> _Run:
     """A run up to the event that ends it."""
     cut = _cut_at_exit(times, states, Exit(ending.time, ending.state, 0))
-    return *cut, "EVENT", explain_ending(ending)
+    return *cut, "EVENT", explain_ending(ending, clock)
 
 
 def _cut_at_exit(times: Array, states: Array, end: Exit) -> tuple[Array, Array]:

@@ -82,11 +82,12 @@ def warn_of_shock(system: System, request: Request) -> None:
         find_shock(cast("FamilySystem", system), request),
         float(request.times[-1]) - request.start,
     )
+    clock = system.clock[0]
     if after < end:
         warnings.warn(
-            f"{system.name} has a shock near t = {request.start + after:.6g}, before the end of "
-            f"the run at t = {request.start + end:.6g}: from then on there is no smooth solution, "
-            "and states are no approximations of one. Ask for an earlier end.",
+            f"{system.name} has a shock near {clock} = {request.start + after:.6g}, before the "
+            f"end of the run at {clock} = {request.start + end:.6g}: from then on there is no "
+            "smooth solution, and states are no approximations of one. Ask for an earlier end.",
             ShockWarning,
             stacklevel=4,
         )

@@ -166,7 +166,7 @@ def simulate(
     )
     check_steps(request)
     if has_noise(system):
-        check_samples(request)
+        check_samples(system, request)
     warn_of_shock(system, request)
     if isinstance(system, FamilySystem) and system.spectral and system.spectral.solved:
         from coadjoint.solve.spectral import check_means

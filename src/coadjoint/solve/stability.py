@@ -82,9 +82,9 @@ def _warn(system: System, request: Request, states: Array, times: Sequence[float
         return False
     warnings.warn(
         f"the step {request.step:.6g} is longer than {bound:.3g}, up to which {request.method!r} "
-        f"does not make the shortest waves of {system.name} grow, with its fields at t = "
-        f"{times[place]:.6g}; expected a shorter one. Take step={0.9 * bound:.2g}, fewer points, "
-        "or an implicit method.",
+        f"does not make the shortest waves of {system.name} grow, with its fields at "
+        f"{system.clock[0]} = {times[place]:.6g}; expected a shorter one. Take "
+        f"step={0.9 * bound:.2g}, fewer points, or an implicit method.",
         StabilityWarning,
         stacklevel=5,
     )

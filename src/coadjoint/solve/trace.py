@@ -54,7 +54,8 @@ def trace(solution: Solution, path: str | PathLike[str] | None = None) -> Any:
     axes.legend(fontsize=8, frameon=False, loc="best")
     axes.set_title(
         f"Trace on the plane, length {_tell_length(way)} {plain if unit else ''}, "
-        f"t = {solution.time[0]:g} .. {solution.time_reached:g} s",
+        f"{solution.system.clock[0]} = {solution.time[0]:g} .. {solution.time_reached:g} "
+        f"{solution.unit('time')}".rstrip(),
         fontsize=10,
     )
     return finish(figure, solution, path)

@@ -10,9 +10,23 @@ from random import Random
 from types import SimpleNamespace
 
 import pytest
-from sympy import Matrix, Rational, Symbol, cos, diag, eye, pi, sqrt, zeros
+from sympy import (
+    Matrix,
+    Rational,
+    Symbol,
+    cos,
+    diag,
+    eye,
+    pi,
+    simplify,
+    sin,
+    sqrt,
+    symbols,
+    zeros,
+)
 
 from coadjoint.derive import derive
+from coadjoint.derive.mechanics.noise import noise_fields
 from coadjoint.derive.setting import assemble
 from tests.specs import shipped
 
@@ -447,6 +461,77 @@ def test_the_torque_of_veselova_is_along_gamma():
     assert not any(x(rest, q.Gamma))
     assert rate.Omega.dot(q.Gamma) + q.Omega.dot(rate.Gamma) == 0
     assert any(rest)
+
+
+def test_veselova_moves_as_the_multiplier_says():
+    """Omega' . Gamma = 0 gives lambda = -Gamma . I^-1 (I Omega x Omega)/(Gamma . I^-1 Gamma)."""
+    point = Point("veselova")
+    q = point.q
+    free = x(by(q.I, q.Omega), q.Omega)
+    multiplier = -q.Gamma.dot(over(free, q.I)) / q.Gamma.dot(over(q.Gamma, q.I))
+    check_equal(point.rate.Omega, over(free + multiplier * q.Gamma, q.I))
+    with pytest.raises(AssertionError):
+        check_equal(point.rate.Omega, over(free - multiplier * q.Gamma, q.I))
+
+
+def test_noise_turns_the_momentum_about_each_axis():
+    """Arnaudon, De Castro and Holm: dPi = Pi x Omega dt + sum_k Pi x (sigma_k e_k) o dW_k."""
+    point = Point("stochastic_rigid_body")
+    q, setting = point.q, derive(shipped("stochastic_rigid_body")).setting
+    check_equal(point.rate.Pi, x(q.Pi, over(q.Pi, q.I)))
+    fields = noise_fields(setting)
+    assert [each.name for each in fields] == ["dW1", "dW2", "dW3"]
+    for k, each in enumerate(fields):
+        found = [setting.field.to_sympy(entry).xreplace(point.at) for entry in each.field]
+        axis = q.sigma[k] * eye(3)[:, k]
+        check_equal(found, x(q.Pi, axis))
+        with pytest.raises(AssertionError):
+            check_equal(found, x(axis, q.Pi))
+
+
+def test_truncated_vorticity_moves_by_its_stream_function():
+    """Zeitlin (1991): W' = [P, W]/hbar, -Delta P = W with the Laplacian of Hoppe and Yau (1998)."""
+    point = Point("zeitlin_su_4")
+    q, algebra = point.q, derive(shipped("zeitlin_su_4")).setting.algebra
+    # complex matrices as real ones of twice their size
+    basis = [Matrix(8, 8, lambda i, j, e=e: e.get((i, j), 0)) for e in algebra.matrices]
+
+    def laplacian(matrix):
+        """The sum of double commutators with spins: half of the first three over i."""
+        return -sum((bracket(s, bracket(s, matrix)) for s in basis[:3]), zeros(8, 8)) / 4
+
+    degrees = [1] * 3 + [2] * 5 + [3] * 7
+    assert [laplacian(e) - d * (d + 1) * e for e, d in zip(basis, degrees, strict=True)] == [
+        zeros(8, 8)
+    ] * 15
+    gram = Matrix(15, 15, lambda i, j: -(basis[i] * basis[j]).trace() / 2)
+    parts = gram.LUsolve(q.w)
+    W = sum((c * e for c, e in zip(parts, basis, strict=True)), zeros(8, 8))
+    P = sum(
+        (-c / (d * (d + 1)) * e for c, d, e in zip(parts, degrees, basis, strict=True)), zeros(8, 8)
+    )
+    assert laplacian(P) == -W
+    rate = bracket(P, W) / q.hbar
+    check_equal(point.rate.w, [-(rate * e).trace() / 2 for e in basis])
+    V = sum((c * e for c, e in zip(q.Psi, basis, strict=True)), zeros(8, 8))
+    check_equal(bracket(W, V), rate)
+    with pytest.raises(AssertionError):
+        check_equal(bracket(V, W), rate)
+
+
+def test_vorticity_in_the_plane_is_carried_by_the_fluid():
+    """The curl of Euler's equation u' + (u . grad) u = -grad p, for u = (psi_y, -psi_x)."""
+    a, b = symbols("x y")
+    psi = sin(a) * cos(2 * b) + cos(a + 3 * b) / 2 + a**2 * b
+    u = (psi.diff(b), -psi.diff(a))
+    along = [sum(v * part.diff(at) for v, at in zip(u, (a, b), strict=True)) for part in u]
+    expected = -(along[1].diff(a) - along[0].diff(b))  # the pressure has no curl
+    w = u[1].diff(a) - u[0].diff(b)
+    (rate,) = derive(shipped("euler_2d")).rates
+    given = {f"{n}_{at}": f.diff(at) for n, f in (("psi", psi), ("w", w)) for at in (a, b)}
+    found = rate.xreplace({Symbol(name): value for name, value in given.items()})
+    assert simplify(found - expected) == 0
+    assert simplify(found + expected) != 0
 
 
 @pytest.mark.parametrize("system", ["spin_chain_lattice", "elastic_chain"])

@@ -59,6 +59,8 @@ BOOKS = {
         " + (Pi x (0, sigma2, 0)) o dW2 + (Pi x (0, 0, sigma3)) o dW3"
     ],
     # what the sources write in another order or by other letters
+    "affine_line": ["dmu/dt = mu2 J xi", "J = rows((0, -1), (1, 0))", "mu = xi"],
+    "galilei": ["dE/dt = a . P"],
     "heavy_top_damped": ["dPi/dt = tau - diag(d) Omega + Pi x Omega + m g Gamma x chi"],
     "kapitza_top": ["dPi/dt = m (g - a w^2 cos(w t)) Gamma x chi + Pi x Omega"],
     "two_field_top": ["dPi/dt = Pi x Omega + (a, 0, 0) x R1 + (0, b, 0) x R2"],
@@ -84,7 +86,11 @@ BOOKS = {
         "dPi/dt = diag(K) Xi_s - diag(B) Omega_s + Pi x Omega"
         " + (diag(B) Omega) x Xi + Xi x (diag(K) Xi)"
     ],
-    "quadrotor": ["dP/dt = m g down - (0, 0, f) + P x Omega", "ddown/dt = down x Omega"],
+    "quadrotor": [
+        "dP/dt = m g down - (0, 0, f) + P x Omega",
+        "ddown/dt = down x Omega",
+        "dGamma4/dt = v . down",
+    ],
     "zeitlin_su_4": ["dW/dt = [W, V]", "w[k] = -trace(W E[k])", "V = sum(k, Psi[k] E[k])"],
     "euler_2d": [
         "dw/dt = {psi, w}",

@@ -98,10 +98,14 @@ def _tell_variation(setting: Setting) -> tuple[str, str, str]:
             f"d{w}/dt = E_eta(-{w} {{{psi}, eta}}) = {{{psi}, {w}}}",
             r"\dot w = E_\eta (-w \{\psi, \eta\}) = \{\psi, w\}",
         )
+    has_charge = bool(central_charge(setting))
+    cocycle, cocycle_latex = (
+        (" + c eta_s u_ss", r" + c\, \eta_s u_{ss}") if has_charge else ("", "")
+    )
     return (
         "Variation: delta u = eta_t + u eta_s - u_s eta, integrated by parts",
-        "dm/dt = E_eta(m (u eta_s - u_s eta) + c eta_s u_ss)",
-        r"\dot m = E_\eta (m (u \eta_s - u_s \eta) + c\, \eta_s u_{ss})",
+        f"dm/dt = E_eta(m (u eta_s - u_s eta){cocycle})",
+        rf"\dot m = E_\eta (m (u \eta_s - u_s \eta){cocycle_latex})",
     )
 
 

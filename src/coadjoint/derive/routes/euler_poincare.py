@@ -105,33 +105,40 @@ def _rates_of_coordinates(setting: Setting) -> dict[str, Element]:
     return rates
 
 
-def _tell_coordinates(setting: Setting) -> str:
-    """The law of coordinates next to the algebra; "" without any."""
-    return ",  dq/dt = v,  dp/dt = dl/dq" if setting.positions else ""
+def _tell_coordinates(setting: Setting) -> tuple[str, str]:
+    """The law of coordinates next to the algebra, as text and as LaTeX; "" without any."""
+    if not setting.positions:
+        return "", ""
+    rates = r", \qquad \dot q = v, \qquad \dot p = \partial l / \partial q"
+    return ",  dq/dt = v,  dp/dt = dl/dq", rates
 
 
 def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
-    """The derivation as a person would write it down."""
+    """The derivation as a person would write it down, with advection where there is some."""
     back = "-" if setting.sign == 1 else ""
-    turned = sign_text(setting.sign, "ad*_xi mu + dl/da <> a")
-    turned_latex = sign_text(
-        setting.sign, r"\mathrm{ad}^*_\xi \mu + (\partial l / \partial a) \diamond a"
-    )
+    advected = setting.spec.having_role("advected")
+    force, force_latex = " + dl/da <> a", r" + (\partial l / \partial a) \diamond a"
+    carried, carried_latex = f",  da/dt = {back}rho(xi) a", rf", \qquad \dot a = {back}\rho(\xi) a"
+    if not advected:
+        force = force_latex = carried = carried_latex = ""
+    moved, moved_latex = _tell_coordinates(setting)
+    turned = sign_text(setting.sign, f"ad*_xi mu{force}")
+    turned_latex = sign_text(setting.sign, rf"\mathrm{{ad}}^*_\xi \mu{force_latex}")
     return (
         write_step(
             "Reduced Lagrangian",
-            "l(xi, a)",
-            r"l(\xi, a)",
+            "l(xi, a)" if advected else "l(xi)",
+            r"l(\xi, a)" if advected else r"l(\xi)",
             {"l": setting.lagrangian},
             by="euler-poincare",
         ),
         show_momenta(setting),
         show_velocities(setting),
         write_step(
-            "Euler-Poincare equations and advection",
-            f"dmu/dt = {turned},  da/dt = {back}rho(xi) a{_tell_coordinates(setting)}",
-            rf"\dot\mu = {turned_latex}, \qquad \dot a = {back}\rho(\xi) a",
+            "Euler-Poincare equations and advection" if advected else "Euler-Poincare equations",
+            f"dmu/dt = {turned}{carried}{moved}",
+            rf"\dot\mu = {turned_latex}{carried_latex}{moved_latex}",
             write_rates(setting.state, rates),
-            by="advection",
+            by="advection" if advected else "euler-poincare",
         ),
     )

@@ -115,6 +115,8 @@ def momentum_of(
         return None
     node, slopes = total_of(found), setting.field.gradient(setting.lagrangian, parts)
     value = interpret(node, setting.values, setting.field)
+    if value == slopes == setting.elements(parts):
+        return tree.Name(velocity.name)
     return node if value == slopes and is_short(node) else None
 
 

@@ -5,7 +5,8 @@ Comes in: Equations. Goes out: a `VectorForm`. Read next: `coadjoint.derive.vect
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from coadjoint.derive.equations import Equations
@@ -18,8 +19,13 @@ from coadjoint.derive.vectors.brackets import BASIS, commutator_lines, plane_lin
 from coadjoint.derive.vectors.gradients import total_of
 from coadjoint.derive.vectors.lines import VectorForm, VectorLine, rate_of
 from coadjoint.derive.vectors.members import member_form
-from coadjoint.derive.vectors.recognise import is_short, owner_name, recognise
-from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary
+from coadjoint.derive.vectors.recognise import (
+    is_short,
+    owner_name,
+    recognise,
+    recognise_scalar,
+)
+from coadjoint.derive.vectors.vocabulary import Candidate, Vocabulary, measure
 from coadjoint.derive.vectors.words import make_vocabulary
 from coadjoint.notation.trees import BY_PROCESS, DIFFERENTIAL, IN_TIME
 from coadjoint.notation.written import Written
@@ -47,6 +53,11 @@ def vector_form(equations: Equations) -> VectorForm:
         covered = {line.left for line in found}
         missing = [each for each in missing if rate_of(tree.Name(each)) not in covered]
         lines += found
+    if not equations.spec.noise:
+        products = list(_scalar_lines(equations, vocabulary, missing))
+        within |= {owner_name(left) for left, _ in products}
+        missing = [each for each in missing if each not in within]
+        lines += [VectorLine(rate_of(left), right) for left, right in products]
     lines += _named(vocabulary, lines)
     shapes, written = dict(vocabulary.shapes), dict[str, Written]()
     if missing and balance is not None:
@@ -68,6 +79,24 @@ def vector_form(equations: Equations) -> VectorForm:
         told=told,
         within=within,
     )
+
+
+def _scalar_lines(
+    equations: Equations, vocabulary: Vocabulary, missing: Collection[str]
+) -> Iterator[tuple[tree.Name, tree.Node]]:
+    """Scalars of the state, and components without vectors, whose rates are scalar products."""
+    setting = equations.setting
+    for name, rate in zip(equations.variables, equations.exact.rates, strict=True):
+        owner = next((v for v in equations.spec.state if name in v.components), None)
+        if owner is None or (owner.value_shape and name not in missing):
+            continue
+        value = equations.close(rate)
+        reached = setting.field.reach(value)
+        if reached & set(setting.velocities):  # of fields, whose rates do not name momenta
+            continue
+        found = recognise_scalar(vocabulary, value)
+        if found and is_short(total_of(found)):
+            yield tree.Name(name), total_of(found)
 
 
 def _is_solved(equations: Equations, target: Candidate) -> bool:
@@ -130,6 +159,10 @@ def _find_line(
     The drift and the field of each process are found equal to their components one by one.
     """
     found = recognise(vocabulary, target.value)
+    if found is None and measure(target.value) == (2,):
+        # in a plane a component of the state may stand before a turn by a right angle
+        wider = replace(vocabulary, scalars=vocabulary.scalars | vocabulary.moving)
+        found = recognise(wider, target.value)
     if found is None or not is_short(total_of(found)):
         return None
     fields = noise_fields(equations.setting)

@@ -71,6 +71,16 @@ def recognise(vocabulary: Vocabulary, value: Value) -> list[Addend] | None:
     return None
 
 
+def recognise_scalar(vocabulary: Vocabulary, value: Element) -> list[Addend] | None:
+    """Scalar products whose sum is a scalar, exactly; None where none were found."""
+    if not value or vocabulary.field.count_terms(value) > MOST_TERMS:
+        return None
+    found = _search(vocabulary, (value,), whole=True)
+    if found and vocabulary.evaluate(total_of(found)) == value:
+        return _begin_with_plus(map(vocabulary.settle, found))
+    return None
+
+
 def _begin_with_plus(found: Iterable[Addend]) -> list[Addend]:
     """Addends, first of them one that is not subtracted, where there is one."""
     addends = list(found)

@@ -128,6 +128,9 @@ class Vocabulary:
         if isinstance(like[0], tuple):
             yield from self._matrices(words, like, level)
             return
+        if len(like) == 1:
+            yield from self._dots(words, level)
+            return
         same = [word for word in words if measure(word.value) == measure(like)]
         own = [word for word in same if level > 1 or not _is_sum(word.node)]
         # a product of the spec's is no simpler than those of level 1
@@ -158,6 +161,18 @@ class Vocabulary:
                 found = self._cross(a, b)
                 if any(map(bool, found.value)):
                     yield found
+
+    @staticmethod
+    def _dots(words: Sequence[Candidate], level: int) -> Iterator[Candidate]:
+        """Scalar products, those of vectors with names first."""
+        own = [word for word in words if len(measure(word.value)) == 1]
+        if level == 0:
+            own = [word for word in own if isinstance(word.node, tree.Name)]
+        for n, a in enumerate(own if level < 2 else ()):
+            for b in own[n:]:
+                if measure(a.value) == measure(b.value):
+                    node = tree.Call(function="dot", arguments=(a.node, b.node))
+                    yield Candidate(node, (dense.dot(a.value, b.value),))
 
     def _count(self, value: Value) -> int:
         """The number of terms of all components."""
