@@ -177,12 +177,23 @@ def test_what_discrete_gradients_keep():
     ],
 )
 def test_friction_that_is_written_as_a_force_refuses_steps_back_in_time(force, is_refused):
-    """It shrinks volumes; the balance of the energy is then what the default method keeps."""
+    """It shrinks volumes."""
     _, methods = judge(spec(PENDULUM.replace("FORCE", force)))
     for name in ("midpoint4", "midpoint6", "discrete_gradient4"):
         assert ("go back in time" in methods[name].decides) == is_refused, name
-    assert methods["discrete_gradient"].applies
-    assert (methods["discrete_gradient"].rank == 1) == is_refused
+    assert methods["discrete_gradient"].rank == 1  # no other method keeps anything
+
+
+@pytest.mark.parametrize(("force", "first"), [("-c*v[1]", "discrete_gradient"), ("c", "gauss4")])
+def test_friction_prefers_the_balance_of_the_energy_to_integrals(force, first):
+    """Forces that take no energy by themselves leave the default to what keeps integrals."""
+    text = PENDULUM.replace('role = "coordinate"', 'role = "coordinate", shape = [2]')
+    text = text.replace("p^2/2 - cos(q)", "dot(p, p)/2 - cos(q[1])")
+    text = text.replace("FORCE", f"vector({force}, 0)")
+    text += '[observables]\nP = "p[2]"\n[claims]\nconserved = ["P"]\n'
+    _, methods = judge(spec(text))
+    assert methods["gauss4"].exactly == ("P",)
+    assert default(methods) == first
 
 
 def test_shipped_systems_with_relaxation_refuse_steps_back_in_time():
@@ -222,6 +233,7 @@ def test_the_balance_of_the_energy_is_a_law_where_nothing_else_changes_it():
     assert methods["discrete_gradient"].rank == 1
     _, methods = judge(spec(PENDULUM.replace("FORCE", "c*q^2")))  # no friction: compositions apply
     assert methods["discrete_gradient"].laws == (BALANCED,)
+    assert methods["discrete_gradient"].rank == 1  # no other keeps anything
     assert not methods["discrete_gradient4"].laws  # its five steps have middles of their own
     assert methods["discrete_gradient4"].decides.startswith("each of its 5 steps adds h g.f")
     for table, term in (

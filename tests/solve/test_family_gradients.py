@@ -38,6 +38,23 @@ STRAND = (
     .replace('"euler-poincare", "lie-poisson", "hamilton-pontryagin"', '"euler-poincare"')
     .replace('diag(K)*Xi)/2"', 'diag(K)*Xi)/2 - (Xi[1] + Xi[2]/2)^4/4"')
 )
+#: A row of numbers, each of which eats the next one, with an energy of degree 3.
+LATTICE = """
+title = "Lattice of Volterra with cubes"
+routes = ["poisson"]
+
+[index]
+i = { size = 7 }
+
+[variables]
+c = { role = "coordinate", index = "i", default = 1 }
+
+[poisson.brackets]
+"{c[i], c[i+1]}" = "c[i]*c[i+1]"
+
+[hamiltonian]
+h = "sum(i, c[i] + c[i]^3)"
+"""
 FREE = STRAND.replace("order = 4", 'order = 2, ends = "free"')
 #: A magnet with an anisotropy of degree 4.
 MAGNET = (
@@ -96,6 +113,13 @@ def test_what_a_theorem_needs_decides():
     assert masses["average_gradient"]["exactly"] == []  # exp is no polynomial
     assert "degree 10 or less" in masses["average_gradient"]["decides"]
     assert "h g.f" in judge(DRAG)["discrete_gradient"]["decides"]
+
+
+def test_one_is_the_default_where_no_other_method_keeps_anything():
+    """A bracket of neighbours that is not linear, and an energy of degree 3."""
+    found = judge(LATTICE)
+    assert found["discrete_gradient"]["exactly"] == ["energy"]
+    assert [name for name, each in found.items() if each["rank"]] == ["discrete_gradient"]
 
 
 @pytest.mark.parametrize(

@@ -127,7 +127,9 @@ def judge(
         else _judge(every, facts, method, maps)
         for name, method in known.items()
     }
-    return _rank(prefer(facts) if preferred is None else preferred, judged)
+    # of a symmetric bracket a person chooses which law is exact
+    last = ["discrete_gradient"] if facts.spec.relaxation is None else []
+    return _rank(prefer(facts) if preferred is None else preferred, judged, last=last)
 
 
 def refuse_backward(facts: Facts, refusals: Mapping[str, str]) -> dict[str, str]:
@@ -486,10 +488,19 @@ def keeps(facts: Facts, each: Kept, program: Program, *, is_flow: bool) -> bool:
 # -- the order of preference ----------------------------------------------------------------------
 
 
-def _rank(preferred: Sequence[str], judged: Mapping[str, JudgedMethod]) -> tuple[JudgedMethod, ...]:
-    """The methods with their ranks: those that apply and keep something, as they are preferred."""
-    wanted = [judged[name] for name in preferred if name in judged and judged[name].applies]
-    fit = [x.name for x in wanted if x.exactly or x.is_poisson or x.laws]
+def _rank(
+    preferred: Sequence[str], judged: Mapping[str, JudgedMethod], *, last: Sequence[str] = ()
+) -> tuple[JudgedMethod, ...]:
+    """The methods with their ranks: those that apply and keep something, as they are preferred.
+
+    Those named last are taken where none of these does.
+    """
+
+    def fitting(names: Sequence[str]) -> list[str]:
+        wanted = [judged[name] for name in names if name in judged and judged[name].applies]
+        return [x.name for x in wanted if x.exactly or x.is_poisson or x.laws]
+
+    fit = fitting(preferred) or fitting(last)
     return tuple(
         replace(each, rank=fit.index(name) + 1) if name in fit else each
         for name, each in judged.items()

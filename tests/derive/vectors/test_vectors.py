@@ -346,6 +346,35 @@ def test_balances_of_coordinates_are_those_that_the_kernel_solves(system):
         assert not is_derived(equations, left, wrong), place
 
 
+#: A body that cannot turn about its third axis: one component of a velocity rests.
+SUSLOV = """
+title = "Suslov's body under a vertical"
+routes = ["nonholonomic"]
+
+[algebra]
+name = "so(3)"
+
+[variables]
+Omega = { role = "velocity" }
+Gamma = { role = "advected", representation = "vector" }
+
+[parameters]
+I = { shape = [6], form = "symmetric" }
+
+[lagrangian]
+l = "dot(Omega, I*Omega)/2 - Gamma1"
+
+[constraints]
+axis = "Omega3 == 0"
+"""
+
+
+def test_one_component_at_rest_is_no_whole_velocity_at_rest():
+    """What is known of the rest by vectors is shown, and nothing is said of the whole velocity."""
+    form = vector_form(derive(read_spec_text(SUSLOV, "suslov_top")))
+    assert lines(form) == ["dGamma/dt = Gamma x Omega"]
+
+
 @pytest.mark.parametrize("place", range(5))
 def test_affine_motion_is_printed_only_if_every_component_is_right(place):
     """Those of the matrix mu, and those of the vector p."""

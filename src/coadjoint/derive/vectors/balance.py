@@ -68,11 +68,12 @@ def balance_lines(equations: Equations) -> VectorForm | None:
 
 
 def _find_resting(spec: Spec) -> Iterator[str]:
-    """Components of velocities that constraints keep at 0."""
+    """Components of whole velocities that constraints keep at 0."""
+    whole = {each.name: each.components for each in spec.variables}
     for each in spec.constraints:
         sides = (each.left.tree, each.right.tree)
         if each.solves and any(isinstance(side, tree.Number) and not side.value for side in sides):
-            yield from next(v.components for v in spec.variables if v.name == each.solves)
+            yield from whole.get(each.solves, ())
 
 
 def _write_momentum(
