@@ -83,10 +83,9 @@ def warn_of_shock(system: System, request: Request) -> None:
         float(request.times[-1]) - request.start,
     )
     if after < end:
-        warnings.warn(
+        message = (
             f"{system.name} has a shock near t = {request.start + after:.6g}, before the end of "
             f"the run at t = {request.start + end:.6g}: from then on there is no smooth solution, "
-            "and states are no approximations of one. Ask for an earlier end.",
-            ShockWarning,
-            stacklevel=4,
+            "and states are no approximations of one. Ask for an earlier end."
         )
+        warnings.warn(ShockWarning(message, after), stacklevel=4)
