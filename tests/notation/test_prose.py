@@ -46,6 +46,7 @@ def show(text, names=None):
         ("d2h/dp2", r"$\frac{\partial^{2} h}{\partial {p}^{2}}$"),
         ("oscillators x and z", "oscillators $x$ and $z$"),
         ("by J. E. Marsden and R. Montgomery", "by J. E. Marsden and R. Montgomery"),
+        ("all in 2*M*E. Method: exact", r"all in $2\,M\,E$. Method: exact"),
         ("at the rate W. Its centre", "at the rate $W$. Its centre"),
         ("one of x alone, where x is", "one of $x$ alone, where $x$ is"),
         ("tr W^k and det Q", r"$\operatorname{tr}\,{W}^{k}$ and $\operatorname{det}\,Q$"),

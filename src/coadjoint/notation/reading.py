@@ -41,7 +41,8 @@ _BEGINNINGS: Final = (
 )
 _TOKEN: Final = re.compile(
     r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b"  # Lie-Poisson, 2-form
-    rf"|[A-Z]\.(?= (?:[A-Z]\. |(?!(?:{_BEGINNINGS})\b)[A-Z][a-z])))"  # R. Montgomery
+    r"|(?<![-+*/^(=])(?<![-+*/^=] )[A-Z]\."  # R. Montgomery, but no factor
+    rf"(?= (?:[A-Z]\. |(?!(?:{_BEGINNINGS})\b)[A-Z][a-z])))"
     r"|(?P<higher>d\^(?P<order>[2-9])(?P<what>[A-Za-z]\w*)/d(?P<along>[A-Za-z]\w*)\^(?P=order))"
     r"|(?P<rate>d(?P<times>[2-9]?)(?P<of>(?:[A-Za-z]\w*)?)/d(?P<by>[A-Za-z]\w*))"
     r"|(?P<name>_?[A-Za-z]\w*)|(?P<number>\d+(?:\.\d+)?(?:e(?P<ten>[-+]?\d{1,3})\b)?)"

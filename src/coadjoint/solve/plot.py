@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 #: Heights in inches: of the strip of drift below a scene, and of curves above panels.
 STRIP, CURVES = 0.9, 3.5
 #: How much is seen of what is behind a sphere.
-FAR = 0.5
+FAR = 0.6
 #: Of a body that is drawn at several times, which a film does not.
 PALE = ", pale before its end"
 
@@ -366,7 +366,7 @@ def _draw_sphere(axes: Any, sphere: Sphere, solution: Solution) -> Any:
     for n, path in enumerate(sphere.paths):
         near = faces_viewer(path, toward)
         own = {"color": COLOURS[n % len(COLOURS)]} if sphere.labels else {"color": "#56657a"}
-        axes.plot(*np.where(near, np.nan, path), linewidth=0.9, alpha=FAR, zorder=1, **own)
+        axes.plot(*np.where(near, np.nan, path), linewidth=0.9, alpha=FAR, zorder=2.2, **own)
         shown = np.where(near, path, np.nan)
         if sphere.labels:
             label = symbol_label(sphere.labels[n])
@@ -383,7 +383,8 @@ def _draw_sphere(axes: Any, sphere: Sphere, solution: Solution) -> Any:
         (ends, "#000000", "s", "end"),
     ):
         near = toward @ points >= 0
-        axes.scatter(*points[:, ~near], color=colour, marker=marker, s=30, alpha=FAR, zorder=1)
+        behind = {"facecolors": "none", "edgecolors": colour, "zorder": 2.6}
+        axes.scatter(*points[:, ~near], marker=marker, s=30, **behind)
         axes.scatter(*points[:, near], color=colour, marker=marker, s=36, zorder=4, label=label)
     symbol, unit = sphere.symbol, unit_label(sphere.unit)
     letter = symbol if " " not in symbol else f"({symbol})"
