@@ -2,13 +2,15 @@
 
     python site/build.py [--systems heavy_top,kepler] [--output build/site]       (or `make site`)
 
-What a page of a system shows is what commands of coadjoint print. It is made once for each state of
-the engine and of the spec, and kept in build/site-made. Any warning is an error: a link without an
+What a page of a system shows is what commands of coadjoint print; its picture is that of its
+document. It is made once for each state of the engine and of the spec, and kept in build/site-made.
+Any warning is an error: a link without an
 end, an anchor that is not there, an example that fails.
 """
 
 from __future__ import annotations
 
+import base64
 import html
 import os
 import re
@@ -16,13 +18,15 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
+from click.testing import CliRunner
 
 import coadjoint
+import coadjoint.cli
 from coadjoint.cli.arguments import shipped_names, spec_path
 from coadjoint.fingerprint import digest, engine_fingerprint
 from coadjoint.render.prose import set_text
@@ -36,10 +40,9 @@ SOURCE = ROOT / "build" / "site-source"
 #: The style of equations in documents, which has nothing to fill in.
 FORMULAS = templates_folder() / "document" / "formulas.css.j2"
 
-#: What is made of each system: the file, the command that writes it, and how else it may end: 1,
-#: where a motion stops early and is drawn as far as it goes; 2, where there is no such page of it.
+#: What is made of each system: the file, the command that writes it, and how else it may end: 2,
+#: where there is no such page of it.
 PARTS = {
-    "picture.png": (["simulate", "{name}", "--plot", "{path}"], 1),
     "document.html": (["show", "{name}", "--format", "html", "--output", "{path}"], 0),
     "explorer.html": (["explore", "{name}", "--output", "{path}"], 2),
 }
@@ -56,7 +59,8 @@ class Made:
         source: Where it comes from.
         routes: That derive it.
         folder: Where the parts are.
-        parts: Those that the commands could make.
+        has_explorer: Whether there is one of it.
+        caption: What its picture shows: HTML.
         equations: Of its motion, as its document shows them: titles with HTML.
     """
 
@@ -66,7 +70,8 @@ class Made:
     source: str
     routes: Sequence[str]
     folder: Path
-    parts: frozenset[str]
+    has_explorer: bool
+    caption: str
     equations: Mapping[str, str]
 
 
@@ -81,20 +86,16 @@ def make_parts(name: str) -> Made:
         folder.mkdir(parents=True)
         for part, (words, other) in PARTS.items():
             given = [word.format(name=name, path=folder / part) for word in words]
-            run = subprocess.run(
-                [sys.executable, "-P", "-m", "coadjoint.cli", *given],
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            if run.returncode not in (0, other):
+            run = CliRunner().invoke(coadjoint.cli.main, given, catch_exceptions=False)
+            if run.exit_code not in (0, other):
                 raise click.ClickException(f"{' '.join(given)}: {run.stderr}")
-            if run.returncode:
+            if run.exit_code:
                 (folder / f"{part}.txt").write_text(run.stderr, encoding="utf-8")
+        picture = find_picture((folder / "document.html").read_text(encoding="utf-8"))
+        (folder / "picture.png").write_bytes(picture)
         (folder / "done").touch()
-    parts = frozenset(part for part in PARTS if (folder / part).is_file())
     about = " ".join(spec.description.split())
-    document = folder / "document.html"
+    document = (folder / "document.html").read_text(encoding="utf-8")
     return Made(
         name=name,
         title=spec.title,
@@ -102,11 +103,22 @@ def make_parts(name: str) -> Made:
         source=spec.source,
         routes=spec.routes,
         folder=folder,
-        parts=parts,
-        equations=find_equations(document.read_text(encoding="utf-8"))
-        if document.is_file()
-        else {},
+        has_explorer=(folder / "explorer.html").is_file(),
+        caption=find_caption(document),
+        equations=find_equations(document),
     )
+
+
+def find_picture(document: str) -> bytes:
+    """The picture of a document."""
+    data = re.search(r'<figure><img src="data:image/png;base64,([^"]*)"', document)
+    assert data, "without matplotlib a document has no picture"
+    return base64.b64decode(data[1])
+
+
+def find_caption(document: str) -> str:
+    """What stands below the picture of a document: HTML."""
+    return "".join(re.findall(r"<figcaption>(.*?)</figcaption>", document, re.DOTALL)[:1])
 
 
 def find_equations(document: str) -> dict[str, str]:
@@ -123,8 +135,8 @@ def find_equations(document: str) -> dict[str, str]:
 
 
 def make_all(names: Sequence[str]) -> Iterator[Made]:
-    """The same of many systems, two at a time, with progress."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    """The same of many systems, as many at a time as there are processors, with progress."""
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
         made = pool.map(make_parts, names)
         with click.progressbar(made, length=len(names), label="systems", file=sys.stderr) as shown:
             yield from shown
@@ -152,15 +164,12 @@ def write_system(made: Made) -> str:
     lines = [f"# {made.title}", ""]
     if made.about:
         lines += [f"<p>{set_text(made.about)}</p>", ""]
-    if "picture.png" in made.parts:
-        lines += [f"![A motion of {made.title}](../_static/pictures/{made.name}.png)", ""]
-    links = []
-    if "document.html" in made.parts:
-        links.append(f'<a href="../documents/{made.name}.html">Derivation and proofs</a>')
-    if "explorer.html" in made.parts:
+    lines += [f"![A motion of {made.title}](../_static/pictures/{made.name}.png)", ""]
+    lines += [f'<p class="caption">{made.caption}</p>', ""]
+    links = [f'<a href="../documents/{made.name}.html">Derivation and proofs</a>']
+    if made.has_explorer:
         links.append(f'<a href="../explorers/{made.name}.html">Explorer</a>')
-    if links:
-        lines += ["<p>" + " &middot; ".join(links) + "</p>", ""]
+    lines += ["<p>" + " &middot; ".join(links) + "</p>", ""]
     for title, body in made.equations.items():
         lines += [f"## {title}", "", '<div class="formulas">', body, "</div>", ""]
     lines += [
@@ -201,9 +210,7 @@ def write_index(systems: Sequence[Made], *, has_book: bool = False) -> str:
     for title, names in list_groups(known):
         lines += [f"## {title[0].upper()}{title[1:]}", "", '<div class="systems">']
         for name in names:
-            image = ""
-            if "picture.png" in known[name].parts:
-                image = f'<img src="../_static/pictures/{name}.png" alt="" loading="lazy">'
+            image = f'<img src="../_static/pictures/{name}.png" alt="" loading="lazy">'
             label = html.escape(known[name].title)
             lines.append(f'<a href="{name}.html">{image}<span>{label}</span></a>')
         lines += ["</div>", ""]
@@ -253,7 +260,7 @@ def lay_out(systems: Sequence[Made], book: Path | None = None) -> None:
             ("document.html", f"_made/documents/{made.name}.html"),
             ("explorer.html", f"_made/explorers/{made.name}.html"),
         ):
-            if part in made.parts:
+            if (made.folder / part).is_file():
                 shutil.copy(made.folder / part, SOURCE / place)
         _write(f"systems/{made.name}.md", write_system(made))
     if book is not None:

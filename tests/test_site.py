@@ -42,15 +42,14 @@ def test_a_page_shows_what_could_be_made(site):
         source="a book",
         routes=("canonical",),
         folder=ROOT,
-        parts=frozenset(["document.html", "picture.png"]),
+        has_explorer=False,
+        caption="Colour is time.",
         equations={"Equations of motion": "<p>by vectors</p>"},
     )
     page = site["write_system"](made)
     assert "documents/kepler.html" in page
     assert "explorers" not in page
-    assert "explorers/kepler.html" in site["write_system"](
-        replace(made, parts=made.parts | {"explorer.html"})
-    )
+    assert "explorers/kepler.html" in site["write_system"](replace(made, has_explorer=True))
     equations = page.index("<p>by vectors</p>")
     assert page.index("## Equations of motion") < equations < page.index("## Declaration")
     assert "## Equations" not in site["write_system"](replace(made, equations={}))

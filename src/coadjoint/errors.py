@@ -266,7 +266,15 @@ class PeriodicityWarning(UserWarning):
 
 
 class ShockWarning(UserWarning):
-    """A run goes on beyond the time at which the waves of a field break."""
+    """A run goes on beyond the time at which the waves of a field break.
+
+    Attributes:
+        after: How long after the beginning of the run they break.
+    """
+
+    def __init__(self, message: str, after: float) -> None:
+        self.after = after
+        super().__init__(message)
 
 
 def check_type(function: str, value: object, kind: type | tuple[type, ...], expected: str) -> None:

@@ -47,6 +47,7 @@ def show(text, names=None):
         ("oscillators x and z", "oscillators $x$ and $z$"),
         ("by J. E. Marsden and R. Montgomery", "by J. E. Marsden and R. Montgomery"),
         ("W = A + i B. The first", r"$W = A + i\,B$. The first"),
+        ("all in 2*M*E. Method: exact", r"all in $2\,M\,E$. Method: exact"),
         ("one of x alone, where x is", "one of $x$ alone, where $x$ is"),
         ("tr W^k and det Q", r"$\operatorname{tr}\,{W}^{k}$ and $\operatorname{det}\,Q$"),
         ("b . curl b", r"$b \cdot \left(\operatorname{curl}\,b\right)$"),

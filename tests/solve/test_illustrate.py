@@ -12,6 +12,7 @@ from coadjoint.solve.illustrate import (
     _has_colours_of_values,
     _take_colours,
     describe,
+    find_loss,
     illustrate,
     write_svg,
 )
@@ -19,6 +20,7 @@ from coadjoint.solve.panels import COLOURS
 from coadjoint.solve.plot import draw
 from coadjoint.solve.scenes import TIME_MAP
 from coadjoint.systems import (
+    burgers,
     chaplygin_ball,
     euler_disk,
     kdv,
@@ -28,6 +30,7 @@ from coadjoint.systems import (
     rigid_body,
     roller_racer,
     so8_body,
+    spd_motion,
 )
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
@@ -133,3 +136,26 @@ def test_a_line_of_an_svg_picture_is_where_the_figure_has_it():
     expected = axes.transData.transform(np.column_stack([x, y])) * 72 / figure.dpi
     expected[:, 1] = 3 * 72 - expected[:, 1]
     assert np.abs(found - expected).max() < 0.02
+
+
+def test_a_picture_ends_where_waves_break():
+    """Of a sine at 1/3, by its characteristics s + 3 u t; one that falls nowhere goes on."""
+    system, s = burgers.system, 2 * np.pi * np.arange(128) / 128
+    assert "over 0.333 s, by" in illustrate(system, np.sin(s))["caption"]
+    assert illustrate(system, np.sin(s))["caption"].endswith("It ends where the waves break.")
+    still = illustrate(system, np.ones(128))["caption"]
+    assert "over 20 s, by" in still
+    assert "break" not in still
+
+
+def test_a_picture_ends_before_its_digits_are_lost():
+    """A geodesic of symmetric matrices comes so near to their edge that doubles do not suffice."""
+    system, start = spd_motion.system, find_start(spd_motion.system, ())
+    whole = system.simulate(start, (0, 20), samples=1500, progress=False)
+    assert max(whole.drift.values()) > 0.1
+    end = find_loss(whole)
+    assert 5 < end < 20
+    before = system.simulate(start, (0, end), samples=1500, progress=False)
+    assert max(before.drift.values()) < 1e-3
+    assert find_loss(system.simulate(start, (0, 1), samples=50, progress=False)) is None
+    assert illustrate(system, start)["caption"].endswith("invariants drift beyond it.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,17 +23,26 @@ from coadjoint.solve.scenes import (
 )
 from coadjoint.spec import read_spec
 from coadjoint.systems import (
+    heavy_top,
+    heisenberg,
     kepler,
+    lorenz_gyrostat,
     metriplectic_body,
     monopole_kepler,
     n_body,
     n_link_chain,
+    n_particles,
+    orbiting_body,
     rigid_body,
     so4_body,
     sphere_vortices,
     stochastic_rigid_body,
 )
 from tests.specs import render_claims
+
+#: Rows of the state of a body on an orbit: its place, after two momenta.
+POSE = [[9, 13, 17]]
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
 
@@ -133,6 +143,32 @@ def test_orbits_without_a_unit_are_found_by_their_rates(tmp_path):
     assert find_paths(free) is None
 
 
+def test_a_sphere_is_a_leaf_of_the_bracket():
+    """Heisenberg's group moves in planes mu3 = const, though its energy keeps |mu| as well."""
+    motion = heisenberg.simulate([0.6, 0.0, 0.8], (0, 3), samples=50)
+    assert np.ptp(np.linalg.norm(motion["mu"], axis=0)) < 1e-6
+    assert find_spheres(motion) == ()
+    assert find_paths(motion).names == ("mu1", "mu2", "mu3")
+    assert find_sphere(rigid_body.simulate([1, 0.3, -0.8], (0, 1), samples=5)) == "Pi"
+
+
+@pytest.mark.parametrize(
+    ("module", "state", "count", "rows"),
+    [
+        (lorenz_gyrostat, None, 1, [[0, 1, 2]]),
+        (n_particles, None, 3, [[0, 1, 2], [3, 4, 5], [6, 7, 8]]),
+        (orbiting_body, [0.3, 0.5, 0.8, 0, 1, 0, 1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0], 1, POSE),
+    ],
+)
+def test_places_are_found_in_scalars_rows_and_poses(module, state, count, rows):
+    """x, y and z are one place; rows of a matrix are, and the last column of a pose."""
+    motion = module.simulate(state, (0, 1), samples=20)
+    paths = find_paths(motion)
+    assert len(paths.members) == count
+    for member, own in zip(paths.members, rows, strict=True):
+        np.testing.assert_array_equal(member, motion.state[own])
+
+
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_curve_around_an_axis_is_on_the_near_side(axis, sign):
@@ -161,6 +197,21 @@ def test_level_curves_have_one_energy_each():
         assert np.ptp(energy) < 0.02 * energy.max()  # the grid is 4 degrees wide
 
 
+def test_level_curves_are_those_of_what_stays():
+    """With a rotor that keeps its momentum L the energy has (Pi2 - L)^2/2 I2 in it."""
+    with load_texts(render_claims(read_spec(EXAMPLES / "gyrostat.toml")).texts) as system:
+        motion = system.simulate([0.2, 1.0, 0.1, 0.4], (0, 2), samples=20)
+        (sphere,) = find_spheres(motion)
+    assert np.ptp(motion["L"]) == 0
+    inertia, rotor = np.array([1.0, 2.0, 3.0])[:, None], np.array([0.0, 0.4, 0.0])[:, None]
+    assert len(sphere.levels) >= 8
+    for level in sphere.levels:
+        energy = ((level - rotor) ** 2 / inertia).sum(axis=0) / 2
+        assert np.ptp(energy) < 0.02 * energy.max()  # the grid is 4 degrees wide
+    moving = heavy_top.simulate([0, 0, 3, 0.6, 0, 0.8], (0, 2), samples=20)
+    assert find_spheres(moving)[0].levels == ()  # the energy depends on the momentum, which moves
+
+
 def test_paths_with_noise_are_drawn_by_their_seeds(monkeypatch):
     """Three paths from one start on one sphere, each that of its seed; the caption names them."""
     drawn = []
@@ -171,7 +222,7 @@ def test_paths_with_noise_are_drawn_by_their_seeds(monkeypatch):
     assert "3 paths from one start" in told["caption"]
     assert "over 6 s" in told["caption"]
     assert "the seeds 1, 2, 3" in told["caption"]
-    (paths,) = (axes.coadjoint_path for axes in drawn[0].axes if hasattr(axes, "coadjoint_path"))
+    (paths,) = (axes.coadjoint_path[1] for axes in drawn[0].axes if hasattr(axes, "coadjoint_path"))
     np.testing.assert_allclose((paths**2).sum(axis=1), 1.0, rtol=1e-12)
     for seed, path in enumerate(paths, start=1):
         run = stochastic_rigid_body.simulate(

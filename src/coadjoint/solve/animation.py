@@ -18,7 +18,7 @@ from coadjoint.errors import KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.labels import tell_time
 from coadjoint.solve.panels import COLOURS
-from coadjoint.solve.plot import PALE, draw, new_figure
+from coadjoint.solve.plot import FAR, PALE, draw, new_figure
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,7 +149,8 @@ def _list_moves(figure: Any, solution: Solution) -> Iterator[Move]:
     for axes in figure.axes:
         path = getattr(axes, "coadjoint_path", None)
         if path is not None:
-            yield from (_move_along(axes, solution.time, each) for each in path)
+            time, members = path
+            yield from (_move_along(axes, time, each) for each in members)
         elif getattr(axes, "coadjoint_time", False):
             yield _move_over(axes)
         field = getattr(axes, "coadjoint_field", None)
@@ -165,12 +166,15 @@ def _move_along(axes: Any, time: Array, path: Array) -> Move:
     """A point on a path, ``(d, T)``."""
     marked = {"markersize": 9, "markeredgecolor": "white", "zorder": 6}
     (point,) = axes.plot(*path[:, :1], marker="o", color=MOVING, **marked)
+    toward = getattr(axes, "coadjoint_toward", None)
 
     def move(now: float) -> None:
         place = [np.array([np.interp(now, time, row)]) for row in path]
         point.set_data(*place[:2])
         if len(place) == 3:
             point.set_3d_properties(place[2])
+        if toward is not None:
+            point.set_alpha(1.0 if toward @ np.concatenate(place) >= 0 else FAR)
 
     return move
 

@@ -12,6 +12,10 @@ import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from coadjoint.errors import ShockWarning
+
 if TYPE_CHECKING:
     from coadjoint.solve.plot import Scene
     from coadjoint.solve.solution import Solution
@@ -38,6 +42,13 @@ ENDS = {
     "NONFINITE": "It stops where its rates are not finite.",
     "DOMAIN": "It stops where the system is no longer defined.",
 }
+#: The same of waves that break, after which no smooth solution exists.
+BREAKS = "It ends where the waves break."
+#: The largest change of an invariant in a picture, over its size, and why it ends before that.
+DRIFT = 1e-4
+#: Size of an invariant, over that of the state, below which it is 0 but for roundings.
+ROUNDINGS = 1e-9
+LOSES = "It ends where the digits of doubles do not suffice: invariants drift beyond it."
 
 
 def illustrate(system: System, state: Sequence[float], form: str = "html") -> dict[str, str]:
@@ -54,10 +65,21 @@ def illustrate(system: System, state: Sequence[float], form: str = "html") -> di
     """
     from coadjoint.solve.plot import draw
 
-    with warnings.catch_warnings():  # of a shock or a kink on the way, which the picture shows
-        warnings.simplefilter("ignore")
-        solutions = _simulate(system, state, SAMPLES if form == "html" else FEW_SAMPLES)
+    samples = SAMPLES if form == "html" else FEW_SAMPLES
+    with warnings.catch_warnings(record=True) as told:  # of kinks on the way, which it shows
+        warnings.simplefilter("always")
+        solutions = _simulate(system, state, samples)
+        breaks = [each.message.after for each in told if isinstance(each.message, ShockWarning)]
+        if breaks:  # what comes after is no motion
+            solutions = _simulate(system, state, samples, span=min(breaks))
+        lost = find_loss(solutions[0])
+        if lost is not None:
+            solutions = _simulate(system, state, samples, span=lost)
     figure, caption = draw(*solutions), describe(*solutions)
+    if breaks:
+        caption += f" {BREAKS}"
+    if lost is not None:
+        caption += f" {LOSES}"
     if form == "latex":
         from coadjoint.solve.tikz import write_tikz
 
@@ -69,6 +91,20 @@ def illustrate(system: System, state: Sequence[float], form: str = "html") -> di
     count = MANY_COLOURS if _has_colours_of_values(figure) else COLOURS
     data = base64.b64encode(_take_colours(place, count)).decode("ascii")
     return {"picture": f"data:image/png;base64,{data}", "caption": caption}
+
+
+def find_loss(solution: Solution) -> float | None:
+    """How long after the beginning an invariant has changed by too much; None for never."""
+    far = np.zeros(len(solution), dtype=bool)
+    least = ROUNDINGS * float(np.abs(solution.state[:, 0]).max())
+    for name in solution.conserved:
+        size = float(np.abs(solution[name]).reshape(-1, len(solution))[:, 0].max())
+        if size > least:  # else it begins at 0, and changes by roundings alone
+            change = np.abs(solution.change(name)).reshape(-1, len(solution)).max(axis=0)
+            far |= change > DRIFT * size
+    if not far.any() or far[:2].any():
+        return None
+    return float(solution.time[np.argmax(far) - 1] - solution.time[0])
 
 
 def write_svg(figure: Any) -> str:
@@ -97,7 +133,9 @@ def quote_typst(text: str) -> str:
     return f'"{escaped}"'
 
 
-def _simulate(system: System, state: Sequence[float], samples: int) -> list[Solution]:
+def _simulate(
+    system: System, state: Sequence[float], samples: int, span: float = SPAN
+) -> list[Solution]:
     """The motion from a state; with noise some paths, one for each seed."""
     from coadjoint.solve.noisy import has_noise
 
@@ -113,7 +151,7 @@ def _simulate(system: System, state: Sequence[float], samples: int) -> list[Solu
     reconstruct = bool(system.RECONSTRUCTED)
     return [
         system.simulate(
-            state, (0.0, SPAN), samples=samples, progress=False, reconstruct=reconstruct
+            state, (0.0, span), samples=samples, progress=False, reconstruct=reconstruct
         )
     ]
 
@@ -193,8 +231,8 @@ def _tell_colours(scene: Scene | None, clock: str) -> str:
             return f"The path of each mass has the colour of its rod{parts}."
         case Paths(labels=labels) if labels:
             return "Each vector has a colour of its own."
-        case Paths(members=members) if len(members) > 1:
-            return "Each member has a colour of its own."
+        case Paths(members=members, counted=counted) if len(members) > 1:
+            return f"Each {counted} has a colour of its own."
         case (Sphere(labels=labels),) if labels:
             return "Each member has a colour of its own."
         case Curves(title=title):

@@ -59,6 +59,8 @@ def _write_formula(text: str) -> str:
     if len(text) > SHORT or len(parts) != 1 or not isinstance(parts[0], Formula):
         return ""
     shown = re.sub(r"\\[lr]vert ?", "|", f"${parts[0].written.latex}$")
+    # in a legend a fraction above a line is too small to read
+    shown = re.sub(r"\\frac\{((?:[^{}+-]|\{\w*\})*)\}\{(\w+)\}", r"{\1}/\2", shown)
     try:
         MathTextParser("path").parse(shown)
     except ValueError:  # of LaTeX it knows a part

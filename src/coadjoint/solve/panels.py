@@ -37,6 +37,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 STYLES = ("solid", "dashed", "dotted", "dashdot")
 #: Names in one column of a legend, and lines of one panel.
 LEGEND_ROWS, LINES = 14, 28
+#: Names in one column at the least, and the height of one, inches.
+LEAST_ROWS, LEGEND_ROW = 3, 0.18
 #: Names of the drift in one column, and columns of them.
 SHORT_LEGEND = 4
 #: Where a legend stands: its left edge at the right end of the axes, in the middle of their height.
@@ -212,7 +214,7 @@ def draw_panels(
         elif isinstance(panel, Fan):
             _draw_fan(axes, solution, panel.name)
         else:
-            _draw_lines(axes, solution, panel.name)
+            _draw_lines(axes, solution, panel.name, room=each)
         is_last = n == len(panels) - 1 or row == count - 1
         has_strip = conserved and column == 0
         axes.tick_params(labelsize=8, labelbottom=is_last and not has_strip)
@@ -227,15 +229,16 @@ def draw_panels(
             axes.get_legend().set_in_layout(False)
 
 
-def _draw_lines(axes: Any, solution: Solution, name: str) -> None:
-    """Components of a quantity against time."""
+def _draw_lines(axes: Any, solution: Solution, name: str, room: float) -> None:
+    """Components of a quantity against time; a legend stays within the room, inches."""
     quantity = solution.system.STATE[name]
     for stroke, component in zip(_strokes(), quantity.components, strict=False):
         label = symbol_label(component)
         axes.plot(solution.time, solution[component], linewidth=1.0, label=label, **stroke)
     axes.set_ylabel(f"{symbol_label(name)} {unit_label(quantity.unit)}".rstrip(), fontsize=9)
-    columns = -(-len(quantity.components) // LEGEND_ROWS)
-    size = 8 if columns == 1 else 6.5
+    rows = min(LEGEND_ROWS, max(LEAST_ROWS, int(room / LEGEND_ROW)))
+    columns = -(-len(quantity.components) // rows)
+    size = 8 if columns == 1 else 7
     axes.legend(fontsize=size, ncols=columns, frameon=False, **AT_RIGHT)
     axes.grid(alpha=0.3)
 

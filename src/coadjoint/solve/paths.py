@@ -98,6 +98,13 @@ class Path:
                 state = state + size / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         return np.stack(way, axis=-1), _compare(state, self._samples[..., 1:])
 
+    def take(self, kept: NDArray[np.bool_] | slice = slice(None)) -> Solution:
+        """The motion at its samples and the points that were added, or at some of them."""
+        inputs = self._inputs
+        if inputs is not None and inputs.ndim == self._samples.ndim:
+            inputs = inputs[..., kept]
+        return self._make_part(self._samples[..., kept], self._time[kept], inputs)
+
     def find_points(self) -> Array:
         """Points of the curve, ``(2, *batch, P)``, all samples among them."""
         pieces = self._count_pieces()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coadjoint.errors import KernelArgumentError
+from coadjoint.errors import CoadjointError, KernelArgumentError
 from coadjoint.files import check_writable, write_whole
 from coadjoint.solve.curves import Curves, draw_curves, find_curves
 from coadjoint.solve.labels import symbol_label, time_axis, unit_label
@@ -31,6 +31,7 @@ from coadjoint.solve.scenes import (
     find_spheres,
     style_space,
 )
+from coadjoint.solve.smooth import add_times, has_corners
 from coadjoint.solve.vehicles import Vehicle, draw_vehicle, find_vehicle
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
 
 #: Heights in inches: of the strip of drift below a scene, and of curves above panels.
 STRIP, CURVES = 0.9, 3.5
+#: How much is seen of what is behind a sphere.
+FAR = 0.6
 #: Of a body that is drawn at several times, which a film does not.
 PALE = ", pale before its end"
 
@@ -76,6 +79,9 @@ def draw(solution: Solution, *others: Solution) -> Any:
 def _draw_all(figure: Any, solution: Solution, *others: Solution) -> None:
     """The motion, as the system asks for it, and the drift of its invariants in a strip below."""
     scene = find_scene(solution, *others)
+    fine = solution if others else _smooth(solution, scene)
+    if fine is not solution:
+        scene = find_scene(fine)
     if scene is None:
         if any(is_globe(solution, name) for name in solution.system.STATE):
             figure.set_size_inches(7.2, 5.6)  # maps of the sphere are half as high as wide
@@ -99,15 +105,37 @@ def _draw_all(figure: Any, solution: Solution, *others: Solution) -> None:
     def draw_scene(place: Any) -> None:
         match scene:
             case Paths():
-                _draw_paths(figure, place, solution, scene)
+                _draw_paths(figure, place, fine, scene)
             case RollingBody():
                 _draw_rolling(figure, place, solution, scene)
             case tuple():
-                _draw_spheres(figure, place, solution, scene)
+                _draw_spheres(figure, place, fine, scene)
             case Vehicle():
                 _draw_vehicle(figure, place, solution, scene)
 
     draw_panels(figure, solution, [], (height,), draw_scene)
+
+
+def _smooth(solution: Solution, scene: Scene | None) -> Solution:
+    """The motion at more times, where paths through its samples would have corners."""
+    from coadjoint.solve.noisy import has_noise
+
+    if scene is None or has_noise(solution.system) or not any(map(has_corners, _paths_of(scene))):
+        return solution
+    try:
+        return add_times(solution, lambda found: np.concatenate(_paths_of(find_scene(found))))
+    except (CoadjointError, ValueError):  # between the samples its rates are not known
+        return solution
+
+
+def _paths_of(scene: Scene | None) -> list[Array]:
+    """What is drawn as lines through the samples, ``(paths, d, T)`` each."""
+    match scene:
+        case Paths():
+            return [scene.members]
+        case tuple():
+            return [sphere.paths for sphere in scene]
+    return []
 
 
 Scene = Paths | RollingBody | Vehicle | Curves | tuple[Sphere, ...]
@@ -201,7 +229,7 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
     for n, path in enumerate(paths.members):
         colour = COLOURS[n % len(COLOURS)]
         if several:
-            label = symbol_label(paths.labels[n]) if paths.labels else f"member {n}"
+            label = symbol_label(paths.labels[n]) if paths.labels else paths.name_member(n)
             axes.plot(*path, color=colour, linewidth=1.1, label=label)
         else:
             lines = draw_coloured(axes, path, solution.time)
@@ -227,7 +255,7 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
         axes.legend(fontsize=8, frameon=False, loc="upper left")
     for radius in paths.radii:
         draw_ball(axes, radius, face=False)
-    axes.coadjoint_path = paths.members
+    axes.coadjoint_path = solution.time, paths.members
     _limit_space(axes, paths)
     if several:
         # in space the letter of an axis is at the right
@@ -338,20 +366,26 @@ def _draw_sphere(axes: Any, sphere: Sphere, solution: Solution) -> Any:
     for n, path in enumerate(sphere.paths):
         near = faces_viewer(path, toward)
         own = {"color": COLOURS[n % len(COLOURS)]} if sphere.labels else {"color": "#56657a"}
-        axes.plot(*np.where(near, np.nan, path), linewidth=0.9, alpha=0.35, zorder=1, **own)
+        axes.plot(*np.where(near, np.nan, path), linewidth=0.9, alpha=FAR, zorder=2.2, **own)
         shown = np.where(near, path, np.nan)
         if sphere.labels:
             label = symbol_label(sphere.labels[n])
             axes.plot(*shown, linewidth=1.1, zorder=3, label=label, **own)
         elif len(solution) > 1:
             lines = draw_coloured(axes, shown, solution.time, zorder=3, linewidth=1.6)
-    axes.coadjoint_path = sphere.paths
+    axes.coadjoint_path, axes.coadjoint_toward = (solution.time, sphere.paths), toward
     first = "#000000" if sphere.labels else COLOURS[1]  # a path may have that colour
     starts, ends = (np.stack([path[:, at] for path in sphere.paths], axis=1) for at in (0, -1))
     if np.ptp(starts, axis=1).max() == 0:
         starts = starts[:, :1]
-    axes.scatter(*starts, color=first, s=36, zorder=4, label="start")
-    axes.scatter(*ends, color="#000000", s=36, marker="s", zorder=4, label="end")
+    for points, colour, marker, label in (
+        (starts, first, "o", "start"),
+        (ends, "#000000", "s", "end"),
+    ):
+        near = toward @ points >= 0
+        behind = {"facecolors": "none", "edgecolors": colour, "zorder": 2.6}
+        axes.scatter(*points[:, ~near], marker=marker, s=30, **behind)
+        axes.scatter(*points[:, near], color=colour, marker=marker, s=36, zorder=4, label=label)
     symbol, unit = sphere.symbol, unit_label(sphere.unit)
     letter = symbol if " " not in symbol else f"({symbol})"
     style_space(axes, [f"{letter}$_{n}$ {unit}".rstrip() for n in (1, 2, 3)])

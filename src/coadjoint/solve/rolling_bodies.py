@@ -41,6 +41,8 @@ FIELDS: Final = ("#c9d6e4", "#6f8fb0", "#d95f02")
 PALE: Final = ("#eef2f6", "#d6dfe8", "#f2c9a6")
 #: Rings of the cap where the third axis of a body leaves it, by which its turning over is seen.
 CAP: Final = 4
+#: How wide the cap may be, over the width of the body.
+WIDTH: Final = 0.5
 #: Points of a ring in a sector.
 SECTOR: Final = 6
 #: Where the viewer stands.
@@ -176,11 +178,12 @@ def _draw_surface(axes: Any, body: RollingBody, at: int, colours: tuple[str, ...
 
     depths = TOWARD @ body.centre
     nearness = float((depths[at] - depths.min()) / (np.ptp(depths) or 1.0))
+    surface = body.surface_at(at)
     sectors = np.tile(np.arange(COLUMNS) // SECTOR % 2, (ROWS + 1, 1))
     if not body.is_flat:  # of a disk all rings are its rim
-        sectors[-CAP:] = 2
+        sectors[-_count_cap(surface) :] = 2
     return axes.plot_surface(
-        *body.surface_at(at),
+        *surface,
         facecolors=np.array([to_rgb(each) for each in colours])[sectors],
         rcount=ROWS + 2,
         ccount=COLUMNS + 1,
@@ -190,6 +193,17 @@ def _draw_surface(axes: Any, body: RollingBody, at: int, colours: tuple[str, ...
         zorder=4 + nearness,
         clip_on=False,  # at the border of a box seen from near
     )
+
+
+def _count_cap(surface: Array) -> int:
+    """Rings of the cap: few, and of a flat body, whose top is a few rings alone, the inner ones.
+
+    Args:
+        surface: ``(3, rings, points)``, of which the last ring is where the axis leaves it.
+    """
+    across = np.linalg.norm(surface - surface.mean(axis=2, keepdims=True), axis=0).max(axis=1)
+    inside = int(np.argmax(across[::-1] > WIDTH * across.max())) - 1
+    return int(np.clip(inside, 1, CAP))
 
 
 def _turned(quaternions: Array) -> Array:

@@ -7,6 +7,7 @@ axes. Read next: `coadjoint.solve.plot`.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -56,6 +57,8 @@ class Paths:
         unit: Their unit.
         members: ``(members, dimensions, T)``.
         labels: Names of the members; none where they are numbered.
+        counted: What is numbered: equal members, or components of vectors.
+        first: The first number.
         linked: Whether each hangs on the one before by a rod, the first on the origin.
         central: Whether the origin attracts or repels it.
         radii: Of spheres about the origin between which it moves.
@@ -65,9 +68,15 @@ class Paths:
     unit: str
     members: Array
     labels: tuple[str, ...] = ()
+    counted: str = "member"
+    first: int = 0
     linked: bool = False
     central: bool = False
     radii: tuple[float, ...] = ()
+
+    def name_member(self, n: int) -> str:
+        """What one of those is called that are numbered."""
+        return f"{self.counted} {self.first + n}"
 
 
 @dataclass(frozen=True)
@@ -98,17 +107,59 @@ def find_paths(solution: Solution) -> Paths | None:
     """What moves in the plane or in space; None where nothing of the state is a position."""
     state = solution.system.STATE
     for name, quantity in state.items():
-        dimensions = quantity.shape[0] if quantity.shape else 0
-        if quantity.unit == _LENGTH and dimensions in (2, 3) and len(quantity.shape) <= 2:
-            values = np.asarray(solution[name]).reshape(dimensions, -1, len(solution))
-            names = tuple(f"{name}{n + 1}" for n in range(dimensions))
-            found = _paths(names, quantity.unit, values.swapaxes(0, 1))
+        places = _find_places(solution, name)
+        if places is not None:
+            names = tuple(f"{name}{n + 1}" for n in range(places.shape[1]))
+            names = names if len(quantity.shape) < 2 or len(places) > 1 else ("x", "y", "z")
+            found = _paths(names, _LENGTH, places)
             return found and replace(found, central=_is_central(solution, name))
-    x, y = state.get("x"), state.get("y")
+    x, y, z = (state.get(name) for name in "xyz")
     if x and y and (x.unit, x.shape) == (y.unit, y.shape) and len(x.shape) <= 1:
-        values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in "xy"])
-        return _paths(("x", "y"), x.unit, values.swapaxes(0, 1))
+        names = ("x", "y", "z") if z and (x.unit, x.shape) == (z.unit, z.shape) else ("x", "y")
+        values = np.stack([np.asarray(solution[n]).reshape(-1, len(solution)) for n in names])
+        found = _paths(names, x.unit, values.swapaxes(0, 1))
+        if found and not isinstance(solution.system, FamilySystem):
+            return replace(found, counted="component", first=1)
+        return found
     return _find_links(solution) or _find_moving(solution) or _find_orbit(solution)
+
+
+def _find_places(solution: Solution, name: str) -> Array | None:
+    """Places in the plane or in space that a quantity holds, ``(members, dimensions, T)``.
+
+    Those are a vector, columns of a matrix, as of a pose, or its rows where a shift of all rows
+    changes no rate; None of what holds none.
+    """
+    quantity = solution.system.STATE[name]
+    count, units = len(quantity.components), quantity.unit.split(", ")
+    held = np.array([each == _LENGTH for each in (units if len(units) > 1 else units * count)])
+    values = np.asarray(solution[name])
+    if _are_rows(solution, name) and held.all():
+        return values.reshape(3, 3, -1)
+    if not held.any() or not 1 <= len(quantity.shape) <= 2 or quantity.shape[0] not in (2, 3):
+        return None
+    columns = held.reshape(quantity.shape[0], -1)  # (dimensions, members)
+    if not (columns == columns[0]).all():
+        return None
+    return values.reshape(*columns.shape, -1)[:, columns[0]].swapaxes(0, 1)
+
+
+def _are_rows(solution: Solution, name: str) -> bool:
+    """Whether nine components are three places, one below the other, that can be shifted."""
+    system = solution.system
+    quantity = system.STATE[name]
+    if quantity.shape != (9,) or quantity.components[1] != f"{name}12":
+        return False
+    rows, shifted = system.STATE.rows(name), solution.state[:, :1].copy()
+    shifted[rows] += np.tile([0.3, -0.2, 0.5], 3)[:, None]
+    try:
+        rates, others = (
+            np.asarray(system.rhs(each, solution.parameters, target="numpy"))
+            for each in (solution.state[:, :1], shifted)
+        )
+    except (CoadjointError, TypeError, ValueError):
+        return False  # time or inputs
+    return bool(np.abs(others - rates).max() <= _ROUNDED * np.abs(rates).max())
 
 
 def _find_links(solution: Solution) -> Paths | None:
@@ -130,7 +181,7 @@ def _find_orbit(solution: Solution) -> Paths | None:
         return None
     values = np.asarray(solution[name])
     size = np.linalg.norm(values, axis=0)
-    if not np.isfinite(size).all() or np.ptp(size) <= ON_SPHERE * size.max():
+    if not np.isfinite(size).all() or find_sphere(solution):
         return None
     steps = np.diff(size)
     one_way = bool((steps >= 0).all() or (steps <= 0).all())
@@ -146,6 +197,8 @@ def _is_central(solution: Solution, name: str) -> bool:
     at = np.unique(np.linspace(0, len(solution) - 1, _ASKED).astype(int))
     found = np.asarray(system.rhs(solution.state[:, at], solution.parameters, target="numpy"))
     force, place = found[system.STATE.rows(rate)], np.asarray(solution[name])[:, at]
+    if len(place) not in (2, 3):
+        return False
     if len(place) == 2:
         force, place = (np.vstack([each, np.zeros(len(at))]) for each in (force, place))
     size = np.linalg.norm(force, axis=0) * np.linalg.norm(place, axis=0)
@@ -304,9 +357,28 @@ def find_sphere(solution: Solution) -> str:
         if quantity.shape != (3,):
             continue
         values = np.asarray(solution[name])
-        if _have_one_length(values[None]) and _moves(values):
+        if _have_one_length(values[None]) and _moves(values) and _is_leaf(solution, name):
             return name
     return ""
+
+
+def _is_leaf(solution: Solution, name: str) -> bool:
+    """Whether a sphere is where the bracket lets a vector go, where that is the whole state.
+
+    A motion may keep the length by its energy alone: on the Heisenberg group it goes in planes.
+    """
+    system, radius = solution.system, float(np.linalg.norm(np.asarray(solution[name])[:, 0]))
+    casimirs = [each for each in system.OBSERVABLES if re.fullmatch(r"casimir\d+", each)]
+    if set(system.STATE) != {name} or not casimirs:
+        return True
+    longitude, latitude = np.mgrid[-3.0:3.0:5j, -1.5:1.5:5j].reshape(2, -1)
+    points = _on_sphere(longitude, latitude, radius)
+    try:
+        found = np.asarray(system.observables(points, solution.parameters, target="numpy"))
+    except (CoadjointError, TypeError, ValueError):
+        return True  # time, inputs or a domain that the whole sphere is not in
+    values = np.stack([found[system.OBSERVABLES.rows(each)] for each in casimirs])
+    return bool((np.ptp(values, axis=1) <= ON_SPHERE * np.abs(values).max(axis=1)).all())
 
 
 def choose_view(vector: Array) -> Array:
@@ -367,6 +439,8 @@ def style_space(axes: Any, labels: Sequence[str]) -> None:
         axis.get_major_locator().set_params(nbins=4)
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
         axis._axinfo["grid"].update(color="#e3e6ea", linewidth=0.6)
+    axes.zaxis.set_rotate_label(False)  # along the axis it may stand on its head
+    axes.zaxis.label.set_rotation(90)
     axes.set_box_aspect((1, 1, 1), zoom=1.0)
     axes.tick_params(labelsize=7, pad=0)
 
@@ -408,12 +482,12 @@ def draw_coloured(axes: Any, path: Array, time: Array, **options: Any) -> Any:
 
 
 def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
-    """Level curves of the energy on the sphere of a system whose state is that vector alone.
+    """Level curves of the energy on the sphere of a vector.
 
-    Each is ``(3, T)``; none where the energy is not a function of the vector.
+    Each is ``(3, T)``; none where the energy depends on what else moves.
     """
     system = solution.system
-    if set(system.STATE) != {name} or "energy" not in system.OBSERVABLES:
+    if "energy" not in system.OBSERVABLES:
         return []
     longitude = np.linspace(-np.pi, np.pi, ALONG)
     latitude = np.linspace(-np.pi / 2, np.pi / 2, ACROSS)
@@ -421,12 +495,14 @@ def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            values = system.observables(grid.reshape(3, -1), solution.parameters, target="numpy")
-        row = list(system.OBSERVABLES).index("energy")
-        energy = np.asarray(values)[row].reshape(ACROSS, ALONG)
-    except (CoadjointError, TypeError, ValueError, IndexError):
+            energy, *later = (
+                _find_energy(solution, name, at, grid) for at in (0, len(solution) // 2, -1)
+            )
+    except (CoadjointError, TypeError, ValueError):
         return []  # time, inputs or a domain that the whole sphere is not in
     if not np.isfinite(energy).all() or np.ptp(energy) == 0:
+        return []
+    if any(np.abs(each - energy).max() > _ROUNDED * np.ptp(energy) for each in later):
         return []
     from contourpy import contour_generator
 
@@ -434,6 +510,16 @@ def energy_levels(solution: Solution, name: str, radius: float) -> list[Array]:
     heights = np.linspace(energy.min(), energy.max(), LEVELS + 2)[1:-1]
     lines: list[Any] = [line for height in heights for line in maker.lines(height)]
     return [_on_sphere(line[:, 0], line[:, 1], 1.002 * radius) for line in lines]
+
+
+def _find_energy(solution: Solution, name: str, at: int, vectors: Array) -> Array:
+    """The energy of vectors ``(3, ...)`` where what else moves is as in a sample."""
+    system = solution.system
+    states = np.repeat(solution.state[:, at, None], vectors[0].size, axis=1)
+    states[system.STATE.rows(name)] = vectors.reshape(3, -1)
+    values = np.asarray(system.observables(states, solution.parameters, target="numpy"))
+    energy: Array = values[system.OBSERVABLES.rows("energy")].reshape(vectors.shape[1:])
+    return energy
 
 
 def _on_sphere(longitude: Array, latitude: Array, radius: float) -> Array:

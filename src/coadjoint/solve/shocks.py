@@ -84,10 +84,9 @@ def warn_of_shock(system: System, request: Request) -> None:
     )
     clock = system.clock[0]
     if after < end:
-        warnings.warn(
+        message = (
             f"{system.name} has a shock near {clock} = {request.start + after:.6g}, before the "
             f"end of the run at {clock} = {request.start + end:.6g}: from then on there is no "
-            "smooth solution, and states are no approximations of one. Ask for an earlier end.",
-            ShockWarning,
-            stacklevel=4,
+            "smooth solution, and states are no approximations of one. Ask for an earlier end."
         )
+        warnings.warn(ShockWarning(message, after), stacklevel=4)
