@@ -499,7 +499,7 @@ def test_kernels_in_the_browser_equal_those_of_numpy(page, pages, name):
 
 
 def test_a_body_is_turned_below_its_momenta_and_a_link_holds_how(page, pages):
-    """Momenta rest in space while a hand turns the body; a link and Start over stand it so again."""
+    """Momenta rest in space while a hand turns the body; links and Start over keep that."""
     show(page, pages("kirchhoff"), calm=True)
     seen = (
         "[scene.spinning, scene.pushing].flatMap((each) => "
