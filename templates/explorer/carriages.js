@@ -51,9 +51,8 @@ class CarriageScene extends PlanarScene {
     const { model, drawing, size, rows } = this, r = model.rest, q = turnBy([0, 0, r[rows.turn]]), at = [r[rows.x], r[rows.y], 0.16 * size];
     this.follow(at);
     drawing.floor(0, 24 * size, size, theme.floor, theme.line, [at[0], at[1], size], at);
-    const trail = this.trail("path");
-    trail.add([at[0], at[1], 0.01 * size], 0.01 * size);
-    drawing.line(trail.points, fade(ORANGE), 3);
+    this.sample();
+    drawing.line(this.trail("path").points, fade(ORANGE), 3);
     const ends = [0, ...this.wheels().map((w) => w.at), ...this.links.map((each) => each.joint)];
     this.beam(q, at, Math.min(...ends), Math.max(...ends), theme.body);
     for (const wheel of this.wheels()) this.axle(multiply(q, turnBy([0, 0, wheel.angle])), plus(at, rotate(q, [wheel.at, 0, 0])), theme);

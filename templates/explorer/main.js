@@ -10,7 +10,10 @@ let theme = THEMES[dark.matches ? "dark" : "light"], running = false, cutting = 
 
 const drawing = new Drawing(id("scene")), view = new SCENES[scene.kind](model, drawing), panel = new SpherePanel(model, id("sphere"));
 const strip = new DriftStrip(model, id("drift"));
-const start = { x: Float64Array.from(model.x), p: Float64Array.from(model.p), u: Float64Array.from(model.u) };
+const start = { x: Float64Array.from(model.x), q: null }; // q is the attitude that a hand has given
+function begin() { start.x.set(model.x); start.q = stands() ? model.pose() : null; }
+/* Whether a body has an attitude that its state does not know. */
+const stands = () => ["body", "rolling"].includes(scene.kind) && !scene.attitude;
 
 let quiet = 0;
 function tell(text, seen = false) {
@@ -32,6 +35,7 @@ function refresh() { view.clear(); panel.clear(); strip.clear(); model.observe()
 function reset() {
   model.x.set(start.x);
   model.settle();
+  if (start.q) model.stand(start.q);
   refresh();
   tell("Back at the start");
 }
@@ -51,7 +55,7 @@ function addSliders(table, array, box) {
     if (each.hidden) { row += each.components.length; continue; } // of very many members
     const group = document.createElement("div"), values = each.components.map((_, k) => array[row + k]);
     group.className = "group";
-    if (each.doc) { const doc = document.createElement("p"); doc.textContent = raise(each.doc); group.append(doc); }
+    if (each.doc) group.append(id("docs").content.querySelector(`[data-of="${CSS.escape(each.name)}"]`).cloneNode(true));
     const big = Math.max(...values.map(Math.abs)) || 1;
     each.components.forEach((name, k) => {
       const at = row++, line = document.createElement("div"), label = document.createElement("label"), input = document.createElement("input"), output = document.createElement("output");
@@ -87,8 +91,8 @@ function addSliders(table, array, box) {
 function changed(table) {
   model.ended = "";
   if (table !== "inputs") { model.find(); model.measure(); if (table === "parameters") view.moving(); refresh(); }
-  if (table === "state" && !running) start.x.set(model.x);
-  save();
+  if (table === "state" && !running) begin();
+  saveSoon();
 }
 function showSliders(all) { for (const each of sliders) if (all || each.table !== "parameters") each.show(false); }
 for (const [table, box, array] of [["inputs", "drive", model.u], ["parameters", "parameters", model.p], ["state", "state", model.x]]) {
@@ -115,12 +119,22 @@ if (scene.noise) {
 
 // -- the address ----------------------------------------------------------------------------------
 
-const MOST_SHARED = 400; // numbers of a state in an address
+const MOST_SHARED = 2000; // numbers of a state in an address
+let saved = 0, later = 0;
+/* While a slider moves, a few times a second: browsers refuse more. */
+function saveSoon() {
+  clearTimeout(later);
+  if (performance.now() - saved > 250) save(); else later = setTimeout(save, 250);
+}
 function save() {
-  const numbers = (array) => [...array].map((v) => Number(v.toPrecision(9))).join(",");
+  const digits = model.n > 200 ? 5 : 9, numbers = (array) => [...array].map((v) => Number(v.toPrecision(digits))).join(",");
+  clearTimeout(later);
+  saved = performance.now();
   const parts = [`p=${numbers(model.p)}`];
   if (model.n <= MOST_SHARED) parts.push(`x=${numbers(running ? start.x : model.x)}`);
   if (model.u.length) parts.push(`u=${numbers(model.u)}`);
+  const attitude = running ? start.q : stands() && model.pose();
+  if (attitude) parts.push(`q=${numbers(attitude)}`);
   if (scene.noise) parts.push(`s=${model.stepper.seed}`);
   try { history.replaceState(null, "", `#${parts.join("&")}`); } catch { location.hash = parts.join("&"); }
 }
@@ -134,15 +148,19 @@ function load() {
   const seed = Number(given.get("s") || NaN);
   if (scene.noise && isSeed(seed)) { model.stepper.restart(seed); id("seed").value = seed; found = true; }
   if (!found) return;
+  const q = (given.get("q") || "").split(",").map(Number);
   start.x.set(model.x);
   model.settle();
+  start.q = stands() && q.length === 4 && Math.hypot(...q) > 0.5 ? normal(q) : null;
+  if (start.q) model.stand(start.q);
   view.moving();
   refresh();
 }
 id("share").addEventListener("click", async () => {
   save();
-  try { await navigator.clipboard.writeText(location.href); tell("The link to this motion is copied.", true); }
-  catch { tell("The address of this page is the link to this motion.", true); }
+  const held = model.n > MOST_SHARED ? "these parameters; the state is too long for a link" : "this motion";
+  try { await navigator.clipboard.writeText(location.href); tell(`Copied: the link to ${held}.`, true); }
+  catch { tell(`The address of this page is the link to ${held}.`, true); }
 });
 
 // -- hands ----------------------------------------------------------------------------------------
@@ -184,7 +202,7 @@ const HINT = scene.noise ? "Curves: levels of the energy, which noise crosses. D
   ? "Curves: levels of the least energy there; orange bounds where this motion can go. Drag the point." : "Curves: levels of the energy; orange: that of the motion. Drag the point.";
 function finish(was) {
   model.settleOn();
-  start.x.set(model.x); model.measure(); model.find(); refresh(); running = was; save();
+  begin(); model.measure(); model.find(); refresh(); running = was; save();
 }
 if (panel.shown) {
   id("sphere-box").hidden = false;
@@ -307,7 +325,7 @@ function showLabels(box, labels, pen, kept = []) {
     span.classList.toggle("behind", Boolean(own.behind));
     const [w, h] = span.extent, at = pen.project(own.at);
     const near = at.front && at.x > -30 && at.x < wide + 30 && at.y > -30 && at.y < high + 30;
-    const put = (side) => { const x = clamp(at.x + side[0] * (w + 16) - w / 2, 2, Math.max(wide - w - 2, 2)), y = clamp(at.y + 0.5 * side[1] * (h + 8) - h / 2, 2, Math.max(high - h - 2, 2)); return [x, y, x + w, y + h]; };
+    const put = (side) => { const x = clamp(at.x + side[0] * (w + 16 + 2 * (own.away || 0)) - w / 2, 2, Math.max(wide - w - 2, 2)), y = clamp(at.y + 0.5 * side[1] * (h + 8) - h / 2, 2, Math.max(high - h - 2, 2)); return [x, y, x + w, y + h]; };
     const tip = own.tip && pen.project(own.tip), ends = tip ? [[tip.x - 6, tip.y - 6, tip.x + 6, tip.y + 6]] : [];
     const free = (place) => ![...taken, ...ends].some((each) => touch(each, place));
     const sides = span.side ? [span.side, ...SIDES] : SIDES, side = near && sides.find((each) => free(put(each)));
@@ -345,19 +363,21 @@ function advance(seconds) {
 }
 function paint() {
   theme = THEMES[dark.matches ? "dark" : "light"];
-  view.labels = [];
   if (frames % 30 === 0) { kept = keepFree(); [room, raised] = findRoom(); }
-  drawing.begin(view.camera, theme.ambient, raised, room);
-  view.draw(theme);
+  do { // again, where the camera has gone to a new motion
+    view.labels = [];
+    view.came = false;
+    drawing.begin(view.camera, theme.ambient, raised, room);
+    view.draw(theme);
+  } while (view.came);
   showLabels(id("scene-labels"), view.labels, drawing, kept);
   if (panel.shown) {
-    const labels = [];
-    panel.draw(theme, labels);
-    showLabels(id("sphere-labels"), labels, panel.drawing);
+    const labels = [], at = panel.draw(theme, labels), spot = at && panel.drawing.project(at);
+    showLabels(id("sphere-labels"), labels, panel.drawing, spot ? [[spot.x - 9, spot.y - 9, spot.x + 9, spot.y + 9]] : []);
     if (panel.plotted) drawComponents(id("section"), panel, theme);
     else if (panel.plane) {
       drawSection(id("section"), panel, theme);
-      id("section-told").textContent = `${panel.dots.length} crossings: up, the third component by the length; across, its rate.`;
+      id("section-told").textContent = `${panel.dots.length} crossings of the green half plane. Drag the point: each motion has its colour.`;
     }
   }
   strip.update(theme, frames % 12 === 0);

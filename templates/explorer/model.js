@@ -8,11 +8,17 @@ const WRITTEN = new Map(Object.values(scene.tables).flat().flatMap((each) => [[e
 function nameOn(element, name) {
   const [letters, below] = WRITTEN.get(name) || [name, ""];
   element.replaceChildren(letters);
-  element.classList.toggle("word", letters.length > 1);
+  element.classList.toggle("word", letters.match(/\p{L}/gu)?.length > 1);
+  element.classList.toggle("upright", letters.codePointAt(0) > 0xffff); // which is a calligraphic letter
   if (below) { const sub = document.createElement("sub"); sub.textContent = below; element.append(sub); }
 }
-const plainName = (name) => (WRITTEN.get(name) || [name, ""]).join("");
+const LOW = ["\u2080", "\u2081", "\u2082", "\u2083", "\u2084", "\u2085", "\u2086", "\u2087", "\u2088", "\u2089"];
+function plainName(name) {
+  const [letters, below] = WRITTEN.get(name) || [name, ""];
+  return letters + below.replace(/\d/g, (c) => LOW[c]);
+}
 
+const AGAIN = 4; // steps after which one is chosen again, as of a disk that falls or of bodies that meet
 const MOST_SWEEPS = 16; // of a step of a field
 const FIELDS = ["strand", "profile", "surface"];
 
@@ -35,6 +41,7 @@ class Model {
       : this.isRing(method) ? new RingMidpoint(scene.members, this.n / scene.members, rates, (x, v, out) => this.call("jacobian_vector", Float64Array.from([...x, ...v]), out))
       : new Stepper(this.n, rates, method, scene.spheres, (flow, x, out) => this.call(flow, x, out));
     this.method = method;
+    this.coarse = scene.noise ? 0 : method.name === "rk4" ? 1 : ["particles", "members"].includes(scene.kind) ? 4 : 0; // the factor within which a step stays
     for (const table of ["parameters", "inputs"]) this.fill(table, table === "inputs" ? this.u : this.p);
     this.position = [0, 0, 0];
     this.attitude = [1, 0, 0, 0];
@@ -237,6 +244,7 @@ class Model {
     const rate = this.findRate((x, out) => this.call("rhs", x, out));
     const [part, most] = FIELDS.includes(scene.kind) ? [0.12, 0.05] : [0.04, 0.02]; // of many rows; their fastest waves are those of two points' length
     this.h = clamp(part / (rate || 1), 1e-6, most);
+    this.steps = 0;
     if (this.stepper instanceof RingMidpoint) { this.stepper.forget(); this.findStep(); }
     if (!scene.noise) return;
     const { slopes } = this.stepper, count = scene.noise.processes.length;
@@ -245,6 +253,12 @@ class Model {
       for (let i = 0; i < this.n; i++) out[i] = slopes.subarray(i * count, (i + 1) * count).reduce((sum, each) => sum + each);
     });
     this.h = 2 ** Math.floor(Math.log2(Math.min(this.h, 0.04 / (noisy * noisy || 1))));
+  }
+
+  findAgain() {
+    const h = this.h;
+    this.find();
+    if (h / this.coarse < this.h && this.h < h * this.coarse) this.h = h; // what a method keeps, it keeps with equal steps
   }
 
   /* The longest step at which a field moves by a small part, and few sweeps are needed. */
@@ -279,6 +293,7 @@ class Model {
     let solved = this.stepper.step(this.x, h);
     if (solved === 0) { this.find(); h = this.h; solved = this.stepper.step(this.x, h); } // shorter, as the motion has become
     if (solved === false || solved === 0) return this.end("the equation of a step");
+    if (this.coarse && ++this.steps >= AGAIN) this.findAgain();
     this.settleOn();
     if (!this.x.every(Number.isFinite)) return this.end("rates without value");
     if (scene.domain.length) {
@@ -343,13 +358,17 @@ class Model {
     return turned;
   }
 
+  /* Take an attitude. */
+  stand(q) {
+    if (scene.attitude) this.write(scene.attitude, q);
+    else this.quaternionRows()?.forEach((row, k) => { this.rest[row] = q[k]; });
+    this.attitude = q;
+  }
+
   /* Turn the body by a rotation of space, as a hand does: its momentum in the body stays. */
   turn(rotation) {
     const q = normal(multiply(rotation, this.pose()));
-    const rows = this.quaternionRows();
-    if (scene.attitude) this.write(scene.attitude, q);
-    else if (rows) rows.forEach((row, k) => { this.rest[row] = q[k]; });
-    this.attitude = q;
+    this.stand(q);
     if (scene.vertical && scene.vertical.table === "state") {
       const length = norm(this.read(scene.vertical)) || 1;
       this.write(scene.vertical, scaled(length, rotate(conjugate(q), E[2])));

@@ -86,7 +86,7 @@ class SpherePanel {
         const cut = [];
         for (let e = 0; e < 3; e++) {
           const p = corner[e], q = corner[(e + 1) % 3], s = (level - values[p]) / (values[q] - values[p]);
-          if ((values[p] < level) !== (values[q] < level)) cut.push(scaled(1.003, unit(plus(points[p], scaled(s, minus(points[q], points[p]))))));
+          if ((values[p] < level) !== (values[q] < level)) cut.push(scaled(1.001, unit(plus(points[p], scaled(s, minus(points[q], points[p]))))));
         }
         if (cut.length === 2) segments.push(...cut[0], ...cut[1], ...tint, ...tint);
       }
@@ -97,7 +97,7 @@ class SpherePanel {
   draw(theme, labels) {
     const { drawing, model } = this;
     drawing.begin(this.camera, theme.ambient);
-    const behind = () => drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], [0.992, 0.992, 0.992], theme.ball, {});
+    const behind = () => drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], [0.997, 0.997, 0.997], theme.ball, {});
     if (this.strand) {
       const size = scene.members, all = Array.from({ length: size }, (_, i) => scene.curve.map((b) => model.x[b * size + i]));
       this.scale = this.scale === 1 ? 1 / Math.max(...all.map(norm), 1e-9) : this.scale;
@@ -131,7 +131,8 @@ class SpherePanel {
     }
     drawing.draw("sphere", [1, 0, 0, 0], at, [0.062, 0.062, 0.062], this.tint);
     if (this.vector.round) drawing.draw("sphere", [1, 0, 0, 0], at, [0.12, 0.12, 0.12], this.tint, { glass: 1 }); // a hand may take it
-    labels.unshift({ text: this.name, at, kind: this.tint === RED ? "red" : this.tint === GREEN ? "green" : "blue", behind: this.hides(at) });
+    labels.unshift({ text: this.name, at, kind: this.tint === RED ? "red" : this.tint === GREEN ? "green" : "blue", behind: this.hides(at), away: 9 });
+    return at;
   }
   names() { return this.vector ? scene.tables[this.vector.table || "state"].flatMap((each) => each.components).filter((_, k) => this.vector.rows.includes(k)) : scene.tables.state[0].components; }
   /* The least time so far in which the vector goes as far as its length. */
@@ -188,7 +189,7 @@ class SpherePanel {
     }
     if (!this.plane || !this.vector) return;
     const w = this.value(), side = dot(w, this.plane.across), rates = this.model.call("rhs", this.model.x, (this.slopes ||= new Float64Array(this.model.n)));
-    const now = { side, height: w[2] / (norm(w) || 1), rate: rates[this.vector.rows[2]], front: dot(w, this.plane.out) };
+    const now = { side, height: w[2] / (norm(w) || 1), rate: rates[this.vector.rows[2]] / (norm(w) || 1), front: dot(w, this.plane.out) };
     const before = this.last;
     if (before && before.side < 0 !== side < 0 && now.front > 0) {
       const s = before.side / (before.side - side);
@@ -214,18 +215,33 @@ function fitCanvas(canvas) {
   return [pen, box.width, box.height];
 }
 
+/* Crossings: up, the third component; across, its rate, both by the length. The frame says from where to where. */
 function drawSection(canvas, panel, theme) {
-  const [pen, wide, high] = fitCanvas(canvas), most = Math.max(...panel.dots.map((d) => Math.abs(d[1])), 1e-9);
-  pen.strokeStyle = theme.pen;
+  const [pen, wide, high] = fitCanvas(canvas), [left, right, top, bottom] = [46, wide - 8, 8, high - 34], heights = panel.dots.map((d) => d[0]);
+  const most = 1.1 * Math.max(...panel.dots.map((d) => Math.abs(d[1])), 1e-9), low = Math.min(...heights, 1), upper = Math.max(...heights, -1);
+  const pad = Math.max(0.1 * (upper - low), 0.01), [least, greatest] = heights.length ? [Math.max(low - pad, -1), Math.min(upper + pad, 1)] : [-1, 1];
+  pen.strokeStyle = pen.fillStyle = theme.pen;
   pen.globalAlpha = 0.35;
+  pen.strokeRect(left, top, right - left, bottom - top);
   pen.beginPath();
-  pen.moveTo(wide / 2, 4); pen.lineTo(wide / 2, high - 4); pen.moveTo(4, high / 2); pen.lineTo(wide - 4, high / 2);
+  pen.moveTo((left + right) / 2, top); pen.lineTo((left + right) / 2, bottom);
   pen.stroke();
   pen.globalAlpha = 1;
+  const third = `${plainName(panel.names()[2])}/|${plainName(panel.name)}|`;
+  const write = (text, x, y, align, font = "12px system-ui, sans-serif") => { Object.assign(pen, { textAlign: align, font }); pen.fillText(text, x, y); };
+  const symbol = 'italic 14px "STIX Two Text", "Times New Roman", serif';
+  write(third, left - 6, (top + bottom) / 2 + 5, "right", symbol);
+  write(`rate of ${third}`, (left + right) / 2, high - 4, "center", symbol);
+  if (!heights.length) return;
+  const digits = Math.max(0, Math.ceil(1 - Math.log10(greatest - least))), tell = (v) => v.toFixed(digits).replace("-", "\u2212"), unit = scene.unitOfTime && scene.unitOfTime !== "1" ? unitText(`1/${scene.unitOfTime}`) : "";
+  write(tell(greatest), left - 6, top + 9, "right");
+  write(tell(least), left - 6, bottom, "right");
+  write(`${shorten(Number((-most).toPrecision(2)))}${unit}`, left, high - 19, "left");
+  write(`${shorten(Number(most.toPrecision(2)))}${unit}`, right, high - 19, "right");
   for (const [height, rate, run] of panel.dots) {
     pen.fillStyle = theme.inks[run % theme.inks.length];
     pen.beginPath();
-    pen.arc(wide / 2 + rate / most * (wide / 2 - 10), high / 2 - height * (high / 2 - 10), 2.2, 0, 7);
+    pen.arc((left + right + rate / most * (right - left)) / 2, bottom - (height - least) / (greatest - least) * (bottom - top), 2.2, 0, 7);
     pen.fill();
   }
 }
@@ -247,7 +263,7 @@ function drawComponents(canvas, panel, theme) {
     pen.beginPath();
     for (const each of past) { const x = right * (1 - (now - each[0]) / span); if (x >= 0) pen.lineTo(x, y(each[k + 1])); }
     pen.stroke();
-    pen.fillText(plainName(panel.names()[k]).replace(/\d/g, (c) => LOW[c]), right + 3, place + 4);
+    pen.fillText(plainName(panel.names()[k]), right + 3, place + 4);
   }
 }
 
@@ -265,7 +281,7 @@ class DriftStrip {
       row.className = "drift";
       nameOn(name, each.name);
       if (each.rows.length > 1) { name.prepend("|"); name.append("|"); }
-      row.title = each.doc;
+      row.title = raise(each.doc);
       name.classList.add("name");
       value.className = error.className = "value";
       canvas.setAttribute("aria-hidden", "true");
@@ -299,6 +315,5 @@ const shorten = (v) => (v === 0 ? "0" : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3
 const tellPower = (v, digits) => { const [own, power] = v.toExponential(digits).split("e"); return `${own}\u00d710${[...power.replace("+", "")].map((c) => HIGH[c]).join("")}`; };
 const tellDrift = (d) => (d < 1e-15 ? "\u00b10" : `\u00b1${tellPower(d, 0)}`);
 const HIGH = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
-const LOW = ["\u2080", "\u2081", "\u2082", "\u2083", "\u2084", "\u2085", "\u2086", "\u2087", "\u2088", "\u2089"];
 const raise = (text) => text.replace(/\^(-?\d+)/g, (_, digits) => [...digits].map((c) => HIGH[c]).join(""));
 const unitText = (unit) => (!unit || unit === "1" ? "" : `\u00a0${raise(unit).replace(/^1\/(\w+)$/, "$1\u207b\u00b9").replace(/ /g, "\u00a0")}`);

@@ -35,6 +35,7 @@ class ParticleScene extends Scene {
   }
   /* What a direction begins at. */
   pivot(k) { return this.rods && k ? this.positions()[k - 1] : [0, 0, 0]; }
+  sample() { this.positions().forEach((at, k) => this.trail(k).add(at, 0.01 * this.extent)); }
   draw(theme) {
     const { drawing, extent } = this, points = this.positions();
     const far = Math.max(...points.map(norm)) + 0.4 * extent; // an arrow's length
@@ -42,11 +43,11 @@ class ParticleScene extends Scene {
     drawing.floor(this.rods ? -1.15 : 0, 6 * extent, extent / 2, [...theme.floor.slice(0, 3), 0.35], theme.line, [1e9, 0, 1], [0, 0]);
     drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], Array(3).fill((this.central ? 0.11 : 0.025) * extent), this.central ? GOLD : theme.steel);
     if (this.directions && !this.rods) drawing.draw("sphere", [1, 0, 0, 0], [0, 0, 0], [1, 1, 1], [...(theme.dark ? theme.steel : theme.body), 0.4], { glass: 1 });
+    this.sample();
     points.forEach((at, k) => {
       const from = this.pivot(k), along = minus(at, from);
       if (this.directions) drawing.draw("tube", turnOnto(E[2], along), from, [0.015, 0.015, norm(along)], theme.steel);
       const tint = [BLUE, RED, GREEN][k % 3], trail = this.trail(k);
-      trail.add(at, 0.01 * extent);
       drawing.line(trail.points, fade(tint), 2.5);
       drawing.draw("sphere", [1, 0, 0, 0], at, Array(3).fill((this.rods ? this.rods.sizes[k] : 0.075) * extent), tint);
       if (!this.rods) drawing.line([at, [at[0], at[1], 0]], () => [...theme.line, 0.5], 1);

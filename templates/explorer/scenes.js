@@ -21,8 +21,14 @@ class Scene {
     this.hint = "Drag to look around";
   }
   trail(name, most) { return (this.trails[name] ||= new Trail(most)); }
-  clear() { this.trails = {}; }
-  follow(at) { this.camera.target = this.camera.target.map((v, k) => v + 0.12 * (at[k] - v)); }
+  clear() { this.trails = {}; this.since = undefined; }
+  /* Come nearer to what moves, as fast at any number of frames; of a new motion, at once. */
+  follow(at) {
+    const now = performance.now() / 1000, part = 1 - Math.exp(-8 * (now - (this.since ?? -Infinity)));
+    this.came = this.since === undefined;
+    this.since = now;
+    this.camera.target = this.camera.target.map((v, k) => v + part * (at[k] - v));
+  }
   label(text, at, kind = "", tip = null) { this.labels.push({ text, at, kind, tip }); }
   /* The name of an arrow, past its tip. */
   nameArrow(text, from, tip, kind) { this.label(text, plus(tip, scaled(0.06, minus(tip, from))), kind, tip); }
@@ -194,11 +200,13 @@ class BodyScene extends Scene {
     }
   }
   turnable() { return true; }
-  /* A free body is turned below its momentum, which rests in space. */
+  /* Without a vertical a body is turned below its momenta, which rest in space. */
   turn(rotation) {
-    const { model } = this, held = this.rolls && rotate(model.pose(), model.read(scene.spinning));
+    const { model } = this, held = [scene.spinning, scene.pushing].filter((each) => !scene.vertical && each?.table === "state");
+    const momenta = held.map((each) => rotate(model.pose(), model.read(each)));
     model.turn(multiply(multiply(conjugate(this.flip), rotation), this.flip));
-    if (held) { model.write(scene.spinning, rotate(conjugate(model.pose()), held)); model.measure(); }
+    held.forEach((each, k) => { model.write(each, rotate(conjugate(model.pose()), momenta[k])); });
+    model.measure();
   }
 }
 
@@ -332,9 +340,8 @@ class PlanarScene extends Scene {
     const at = [r[rows.x], r[rows.y], 0.16 * size], q = turnBy([0, 0, r[rows.turn]]), lift = 0.1 * size;
     this.follow(at);
     drawing.floor(0, 24 * size, size, theme.floor, theme.line, [at[0], at[1], size], at);
-    const trail = this.trail("path");
-    trail.add([at[0], at[1], 0.01 * size], 0.01 * size);
-    drawing.line(trail.points, fade(ORANGE), 3);
+    this.sample();
+    drawing.line(this.trail("path").points, fade(ORANGE), 3);
     const long = Math.max(...wheels.map((w) => Math.abs(w.at)), 0.5 * size);
     this.knobs = [];
     drawing.draw("box", q, at, [long, 0.11 * size, 0.025 * size], theme.body);
@@ -361,6 +368,7 @@ class PlanarScene extends Scene {
       this.knobs.push({ angle: each, at: middle });
     });
   }
+  sample() { this.trail("path").add([this.model.rest[this.rows.x], this.model.rest[this.rows.y], 0.01 * this.size], 0.01 * this.size); }
   /* A knob at the end of something that turns with an angle about a pivot. */
   knob(angle, pivot, end) {
     this.knobs.push({ angle, pivot, at: end, frame: Math.atan2(end[1] - pivot[1], end[0] - pivot[0]) - this.model.read(angle)[0] });

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from coadjoint.explore.page import render_page
+from coadjoint.notation.names import name as symbol
 from coadjoint.pipeline import render
 from coadjoint.resources import derivations_folder
 from coadjoint.solve.folders import load_texts
@@ -495,6 +496,109 @@ def test_kernels_in_the_browser_equal_those_of_numpy(page, pages, name):
         assert (
             np.abs(found - wanted) <= 1e-12 * np.maximum(np.abs(wanted).max(axis=1), 1)[:, None]
         ).all()
+
+
+def test_a_body_is_turned_below_its_momenta_and_a_link_holds_how(page, pages):
+    """Momenta rest in space while a hand turns the body; links and Start over keep that."""
+    show(page, pages("kirchhoff"), calm=True)
+    seen = (
+        "[scene.spinning, scene.pushing].flatMap((each) => "
+        "rotate(explorer.model.pose(), explorer.model.read(each)))"
+    )
+    momenta, before = page.run(seen), page.run("explorer.model.pose()")
+    at = page.run(f"{SPOT}(explorer.view.centre)")
+    page.drag(at, [at[0] + 60, at[1] + 30])
+    attitude = page.run("explorer.model.pose()")
+    assert np.abs(np.subtract(attitude, before)).max() > 0.05
+    np.testing.assert_allclose(page.run(seen), momenta, atol=1e-12)
+    page.run("for (let k = 0; k < 50; k++) explorer.model.step(explorer.model.h); explorer.reset()")
+    np.testing.assert_allclose(page.run("explorer.model.pose()"), attitude, atol=1e-12)
+    state, link = page.run("[...explorer.model.x]"), page.run("location.hash")
+    page.call("Page.navigate", url="about:blank")
+    page.call("Page.navigate", url=pages("kirchhoff").as_uri() + link)
+    page.wait("globalThis.explorer && explorer.frames() > 1")
+    np.testing.assert_allclose(page.run("explorer.model.pose()"), attitude, atol=1e-7)
+    np.testing.assert_allclose(page.run("[...explorer.model.x]"), state, atol=1e-7)
+
+
+def test_a_link_holds_a_field_that_was_pulled(page, pages):
+    """All numbers of a field are in the address, to five digits."""
+    show(page, pages("spin_chain"), calm=True)
+    at = page.run(f"{SPOT}(explorer.view.tips[20])")
+    page.drag(at, [at[0] + 30, at[1] - 45])
+    state, link = page.run("[...explorer.model.x]"), page.run("location.hash")
+    page.call("Page.navigate", url="about:blank")
+    page.call("Page.navigate", url=pages("spin_chain").as_uri() + link)
+    page.wait("globalThis.explorer && explorer.frames() > 1")
+    np.testing.assert_allclose(page.run("[...explorer.model.x]"), state, atol=1e-4)
+
+
+def test_a_disk_that_is_dragged_keeps_its_energy(page, pages):
+    """Where it falls nearly flat its steps become shorter; with those of the start it gains."""
+    show(page, pages("euler_disk"), calm=True)
+    walk = """(coarse => {
+      const { model } = explorer;
+      model.x.set([-3.39, 1.147, 0.2618, -0.08933, 0.4202, 0.903]);
+      model.settle();
+      model.coarse = coarse;
+      while (model.clock[0] < 5 && model.step(model.h));
+      model.observe();
+      return [model.ended, model.drift(model.integrals[0])];
+    })"""
+    ended, drift = page.run(f"{walk}(explorer.model.coarse)")
+    assert (ended, drift < 3e-4) == ("", True), drift
+    assert page.run(f"{walk}(0)")[1] > 1e-3
+
+
+def test_a_camera_is_where_a_motion_begins(page, pages):
+    """A new motion is looked at in its first picture; otherwise the camera comes by and by."""
+    show(page, pages("chaplygin_ball"), calm=True)
+    away = "norm(minus(explorer.view.camera.target, explorer.view.centre))"
+    lost = "explorer.view.camera.target = [9, 9, 0]; explorer.paint();"
+    assert page.run(f"{lost} {away}") > 1
+    x, y = page.run(f"{lost} explorer.reset(); explorer.paint(); {SPOT}(explorer.view.centre)")
+    assert page.run(away) < 0.4  # arrows above the ball have room
+    assert abs(x - 430) < 5
+    assert 200 < y < 600
+
+
+def test_a_section_says_what_its_frame_means(page, pages):
+    """Both axes have their quantity, their ends and the unit of the rate."""
+    show(page, pages("heavy_top"), calm=True)
+    found = page.run("""(() => {
+      const written = [], { panel } = explorer, own = CanvasRenderingContext2D.prototype;
+      const before = own.fillText;
+      panel.cut([1, 0, 0]);
+      panel.dots = [[0.5, -2, 0], [0.9, 1.5, 0]];
+      own.fillText = function (text, ...at) { written.push(text); before.call(this, text, ...at); };
+      document.getElementById("section-box").hidden = false;
+      drawSection(document.getElementById("section"), panel, THEMES.light);
+      own.fillText = before;
+      return written.map((text) => text.replace(/\\s/g, " "));
+    })()""")  # fmt: skip
+    assert found[:2] == ["Γ₃/|Γ|", "rate of Γ₃/|Γ|"]
+    assert found[2:] == ["0.94", "0.46", "−2.2 s⁻¹", "2.2 s⁻¹"]
+
+
+def test_an_orbit_is_drawn_by_its_steps_and_not_by_frames(page, pages):
+    """Many steps between two frames leave as many points on the curve."""
+    show(page, pages("kepler"), calm=True)
+    page.run("explorer.reset(); explorer.paint()")
+    page.run(
+        "for (let k = 0; k < 200; k++) { explorer.model.step(explorer.model.h); view.sample(); }"
+    )
+    assert page.run("explorer.view.trail(0).points.length") > 100
+
+
+def test_casimirs_have_the_letter_of_documents(page, pages):
+    """In the list of what is conserved, and in what the page says of its method."""
+    show(page, pages("heavy_top"), calm=True)
+    names = page.run("[...document.querySelectorAll('#drift .name')].map(each => each.innerHTML)")
+    assert names == ["energy", "𝒞<sub>1</sub>", "𝒞<sub>2</sub>"]
+    assert "<mi>𝒞</mi><mn>1</mn>" in symbol("casimir1").mathml
+    assert "keeps 𝒞₁, 𝒞₂" in page.run("document.getElementById('method').textContent")
+    style = "getComputedStyle(document.querySelectorAll('#drift .name')[1]).fontStyle"
+    assert page.run(style) == "normal"
 
 
 def test_a_browser_without_webgl_is_told(pages):

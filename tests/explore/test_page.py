@@ -12,6 +12,7 @@ import pytest
 from coadjoint.errors import KernelArgumentError
 from coadjoint.explore.page import SCRIPTS, assemble, render_page
 from coadjoint.explore.scene import describe_scene
+from coadjoint.notation.names import name as symbol
 from coadjoint.render.scripts import render_script
 from coadjoint.resources import derivations_folder, templates_folder
 from coadjoint.solve.folders import load_texts
@@ -100,6 +101,28 @@ def test_the_page_has_the_generated_functions_and_names_for_what_it_shows(top):
     for each in ('lang="en"', 'role="status"', "aria-label", "<noscript>", "<h1>Heavy top</h1>"):
         assert each in page
     assert page.count('tabindex="0"') == page.count('role="application"') == 3
+
+
+def test_explanations_of_sliders_have_their_formulas(top):
+    """Each quantity with a slider has what its spec says of it, formulas set."""
+    _, scene = top
+    disk = {**scene["tables"]["state"][0], "name": "disk", "doc": "Gamma3 is m r^2/4"}
+    told = assemble({**scene, "tables": {**scene["tables"], "inputs": [disk]}}, "")
+    docs = element(told, '<template id="docs">', "</template>")
+    names = re.findall('data-of="(.*?)"', docs)
+    tables = scene["tables"]
+    wanted = [q["name"] for t in ("state", "parameters") for q in tables[t] if q["doc"]]
+    assert names == [*wanted, "disk"]
+    assert "<msub><mi>Γ</mi><mn>3</mn></msub></math> is <math><mfrac>" in docs
+    assert "Gamma3" not in docs
+
+
+def test_a_casimir_has_the_letter_that_documents_have(top):
+    """The records and the formulas of documents come from one source."""
+    _, scene = top
+    (casimir, _) = [each for each in scene["tables"]["observables"] if "casimir" in each["name"]]
+    assert casimir["written"] == ("𝒞", "1")
+    assert symbol("casimir1").mathml == "<msub><mi>𝒞</mi><mn>1</mn></msub>"
 
 
 def test_what_a_spec_says_is_text_and_nothing_else(tmp_path):

@@ -22,8 +22,8 @@ def label(casimir, name="casimir1"):
         ("dot(Pi, Pi)", r"${|\Pi|}^{2}$"),
         ("dot(Gamma, Pi)", r"$\Gamma \cdot \Pi$"),
         ("x1 + x2", "$x_1 + x_2$"),
-        ("dot(Pi, Pi)*dot(Gamma, Gamma) - dot(Pi, Gamma)^2", "$C_{1}$"),  # no room
-        ("total of Pi", "$C_{1}$"),  # words
+        ("dot(Pi, Pi)*dot(Gamma, Gamma) - dot(Pi, Gamma)^2", r"$\mathcal{C}_1$"),  # no room
+        ("total of Pi", r"$\mathcal{C}_1$"),  # words
     ],
 )
 def test_a_casimir_is_called_by_its_formula(casimir, expected):
@@ -33,7 +33,7 @@ def test_a_casimir_is_called_by_its_formula(casimir, expected):
 
 def test_other_observables_are_called_by_their_names():
     """Symbols with what stands below them, and words."""
-    assert label("x", "casimir2") == "$C_{2}$"
+    assert label("x", "casimir2") == r"$\mathcal{C}_2$"
     assert label("x", "energy") == "energy"
     assert label("x", "total_momentum") == "total momentum"
     assert label("x", "M_normal_force") == "M$_{normal force}$"

@@ -76,7 +76,7 @@ def assemble(scene: Mapping[str, Any], kernel: str) -> str:
     style = (folder / "page.css").read_text(encoding="utf-8")
     return _environment().get_template("explorer/page.html.j2").render(
         scene=scene,
-        about=set_text(scene["description"]),
+        tell=set_text,
         script=Markup(script),  # noqa: S704 (our files, and a kernel that `refuse_unsafe` passed)
         style=Markup(style),  # noqa: S704 (our file)
         data=Markup(_escape_json(scene)),  # noqa: S704 (escaped for a script element)

@@ -75,8 +75,8 @@ GREEK: Final = {
     )
 }
 _SHORT: Final = {"eps": "epsilon", "lam": "lambda"}
-#: Letters that no spec can name, as LaTeX, Unicode and Typst have them, and as plain text has them.
-_OWN: Final = {"casimir": (r"\mathcal{C}", "\U0001d49e", "cal(C)", "C")}
+#: Letters that no spec can name, as LaTeX, Unicode and Typst have them.
+_OWN: Final = {"casimir": (r"\mathcal{C}", "\U0001d49e", "cal(C)")}
 _RATE = re.compile(r"d(?P<of>.+)_dt")
 #: A name and the numbers of a member, a row or a component behind it.
 _PARTS = re.compile(r"(?P<base>.*?[A-Za-z])(?P<numbers>[0-9]+(?:_[0-9]+)*|(?:_[0-9]+)+)?")
@@ -155,13 +155,11 @@ def spell(text: str) -> tuple[str, str]:
     >>> spell("normal_force")
     ('normal force', '')
     >>> spell("Pi1"), spell("Pi_spatial"), spell("M_1_10"), spell("casimir1")
-    (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('C', '1'))
+    (('Π', '1'), ('Π', 'spatial'), ('M', '1,10'), ('𝒞', '1'))
     """
     symbol, below = _split_name(text.removeprefix("_"), bold=False)
     shown = [each.mathml.replace(DOT_ABOVE, "\u0307") for each in (symbol, *below)]
     plain = [unescape(re.sub("<[^>]+>", "", each)) for each in shown]
-    for _, letter, _, own in _OWN.values():
-        plain[0] = plain[0].replace(letter, own)  # which fonts of pictures lack
     return plain[0].replace("\xa0", " "), ",".join(plain[1:]).replace("\xa0", " ")
 
 
@@ -262,7 +260,7 @@ def _letter(base: str, *, bold: bool) -> Written | None:
         return None if of is None else replace(attach(of, dot=True), text=base)
     typst = _TYPST_GREEK.get(base, base)
     if base in _OWN:
-        latex, letter, typst, _ = _OWN[base]
+        latex, letter, typst = _OWN[base]
     elif base in GREEK:
         latex, letter = GREEK[base]
     elif len(base) == 1:

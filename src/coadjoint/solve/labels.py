@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+from coadjoint.notation.names import name as write
 from coadjoint.notation.names import spell
 from coadjoint.notation.prose import Formula, read_prose
 
@@ -28,26 +29,28 @@ def _raise(unit: str) -> str:
 
 
 def symbol_label(name: str) -> str:
-    """A name as a symbol with its number below, and that of the member, ``S1[0]``, behind it.
+    r"""A name as a symbol with its number below, and that of the member, ``S1[0]``, behind it.
 
-    >>> symbol_label("q[0]"), symbol_label("S1[12]")
-    ('q$_{0}$', 'S$_{1,12}$')
+    >>> symbol_label("q[0]"), symbol_label("S1[12]"), symbol_label("casimir1")
+    ('q$_{0}$', 'S$_{1,12}$', '$\\mathcal{C}_1$')
     """
     whole, _, member = name.partition("[")
     letter, below = spell(whole)
+    if max(letter) > "\uffff":  # which fonts of pictures lack
+        return f"${write(whole).latex}$"
     numbers = ",".join(each for each in (below, member.rstrip("]")) if each)
     return f"{letter}$_{{{numbers}}}$" if numbers else letter
 
 
 def observable_label(system: System, name: str) -> str:
-    """An observable in a legend: a Casimir by its formula where that is short, else by ``C_1``."""
+    """An observable in a legend: a Casimir by its formula where that is short, else by a letter."""
     number = name.removeprefix("casimir")
     if number == name or not number.isdigit():
         label = symbol_label(name)
         return label if "$" in label else label.replace("_", " ")
     texts = system.certificate.get("casimirs", [])
     text = texts[int(number) - 1] if int(number) <= len(texts) else ""
-    return _write_formula(text) or f"$C_{{{number}}}$"
+    return _write_formula(text) or symbol_label(name)
 
 
 def _write_formula(text: str) -> str:
