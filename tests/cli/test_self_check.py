@@ -216,7 +216,7 @@ def test_members_that_leave_the_domain_tell_no_order():
     """They end where they leave it, between steps, which would be read as an order of 4."""
     system = rolling_ellipsoid.system
     runs = self_check.Runs(system, 4)
-    drawn = runs._draw([np.array(self_check._fill(each)) for each in system.STATE.values()])
+    drawn = runs._draw([np.array(each.center) for each in system.STATE.values()])
     given = {"method": "rk4", "step": runs.step, "samples": 1, "target": "numpy"}
     found = system.simulate(drawn, (0, 8 * runs.step), progress=False, **given)
     left = np.asarray(found.status) != "OK"

@@ -10,11 +10,12 @@ from scipy.special import ellipj
 
 from coadjoint.build.compiler import CompilerWarning
 from coadjoint.errors import CrossCheckError, KernelArgumentError
-from coadjoint.solve import march, solvers
+from coadjoint.solve import comparison, march, solvers
 from coadjoint.solve.calls import CStepper
 from coadjoint.solve.choices import Choice
 from coadjoint.solve.costs import Costs, choose_order
 from coadjoint.solve.ensemble import Status
+from coadjoint.solve.family import FamilySystem
 from coadjoint.solve.folders import load_folder
 from coadjoint.solver_kinds import list_kinds
 from coadjoint.systems import heavy_top, kepler, rigid_body, so8_body
@@ -23,7 +24,7 @@ from tests.driven_specs import build as build_driven
 from tests.kernels import COMPILER
 from tests.programs import BOUNDED
 from tests.solve.runs import drive_members
-from tests.solve.systems import POLE, build, pendulum
+from tests.solve.systems import POLE, build, one_variable, pendulum
 from tests.trees_of_files import ROOT
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler on this machine")
@@ -296,6 +297,52 @@ def test_a_solver_that_computes_something_else_is_refused(tmp_path, choice, old,
     with pytest.warns(CompilerWarning, match="NumPy solvers are used instead"):
         found = system._solvers.get(choice, "c")
     assert isinstance(found, solvers.NumpyStepper)
+
+
+#: Sweeps of the midpoint diverge where h is more than 2e-5, and of the second one than 2e-12.
+FAST = one_variable("fast", "1 - 100000*y", "-100000")
+FASTER = one_variable("faster", "1 - 1000000000000*y", "-1000000000000")
+MIDPOINT = Choice(name="midpoint", order=2)
+
+
+def spoil_rises(system):
+    """Make the C of the midpoint go half as far: steps that are not solved do not show it."""
+    path = system.folder / "solver.c"
+    right = "rise[i] = arc->length * rates[i];"
+    assert right in path.read_text()
+    path.write_text(path.read_text().replace(right, right.replace("=", "= 0.5 *")))
+
+
+def test_solvers_are_compared_by_steps_that_are_solved(tmp_path):
+    """Steps are shorter where those of other systems are not."""
+    system = build(FAST, tmp_path)
+    solvers.load(system, MIDPOINT, "c")
+    spoil_rises(system)
+    with pytest.raises(CrossCheckError, match="wrong solver was compiled: midpoint of fast"):
+        solvers.load(system, MIDPOINT, "c")
+
+
+def test_a_comparison_of_failures_alone_is_told(tmp_path):
+    """Nothing was found wrong, and nothing was solved."""
+    with pytest.warns(CompilerWarning, match="midpoint of faster .* every step that was compared"):
+        solvers.load(build(FASTER, tmp_path), MIDPOINT, "c")
+
+
+def test_every_shipped_system_is_compared_by_steps_that_are_solved():
+    """Attitudes are near rotations and domains are met; one method tells for all."""
+    names = sorted(each.name for each in (ROOT / "generated").iterdir() if each.is_dir())
+    compared = [
+        system
+        for system in (load_folder(ROOT / "generated" / name) for name in names)
+        if not isinstance(system, FamilySystem) and not system.stepwise
+    ]
+    assert len(compared) > 80
+    for system in compared:
+        choice = Choice(name="rk4", order=4)
+        run = comparison._probe(system, choice, 2.0**-7, comparison.MOST_STEPS)
+        solvers.NumpyStepper(system, choice).advance(run, 0, comparison.PROBES, 100)
+        whole = (run.status == Status.OK) & (run.steps == 3)
+        assert whole.sum() > comparison.PROBES // 3, system.name
 
 
 def test_ctrl_c_ends_a_run_and_its_threads():

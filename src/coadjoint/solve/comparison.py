@@ -9,6 +9,7 @@ Read next: `coadjoint.solve.solvers`.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -37,7 +38,7 @@ MOST_STEPS: Final = 4
 #: What is drawn is between these, or a default plus this part of its size times that.
 DRAWN: Final = (0.5, 2.0)
 NEAR: Final = 0.01
-#: The parts of a step that are tried until the twin solves some.
+#: The parts of a step that are tried until the twin solves some; shorter ones near the default.
 PARTS: Final = (1.0, 2.0**-6, 2.0**-12)
 #: What becomes of members whose steps fail.
 FAILED: Final = (Status.NONFINITE, Status.NOT_SOLVED, Status.STEP_UNDERFLOW)
@@ -90,9 +91,9 @@ def compare_steps(
             )
     if not solved:
         say_once(
-            f"the compiled {choice} of {system.name} does what its NumPy twin does, but all steps "
-            "that were compared fail: each was tried from states near the default one. Give "
-            "[variables] and [parameters] defaults from which a motion can be followed."
+            f"the compiled {choice} of {system.name} does what its NumPy twin does, but every step "
+            "that was compared fails, also short ones near the default state. Give [variables] and "
+            "[parameters] defaults from which a motion can be followed."
         )
 
 
@@ -133,11 +134,14 @@ def list_kinks(system: System, choice: Choice) -> tuple[str, ...]:
     return tuple(module.value("KINKS")) if module.has("KINKS") else ()
 
 
-def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
+def _probe(
+    system: System, choice: Choice, size: float, most: int, *, is_near: bool = False
+) -> Ensemble:
     """A few members at the start of a few steps, driven by two lines, with four samples.
 
-    All are near the default where states are projected: from far off this may lead nowhere. Every
-    other one is where there is a domain: those elsewhere may leave it, which is compared as well.
+    All are near the default where that is asked for, and where states are projected: from far off
+    this may lead nowhere. Every other one is where there is a domain: those elsewhere may leave it,
+    which is compared as well.
     """
     rows = count_rows(system, choice)
     source = np.random.default_rng(0)
@@ -147,9 +151,9 @@ def _probe(system: System, choice: Choice, size: float, most: int) -> Ensemble:
         return source.uniform(*DRAWN, shape)
 
     state, parameters = draw(rows, PROBES), draw(system.PARAMETERS.size, PROBES)
-    is_projected = "projection" in system.functions
-    if is_projected or system.DOMAIN:
-        near = slice(None, None, 1 if is_projected else 2)
+    is_near |= "projection" in system.functions
+    if is_near or system.DOMAIN:
+        near = slice(None, None, 1 if is_near else 2)
         for array, quantities in ((state, system.STATE), (parameters, system.PARAMETERS)):
             array[: quantities.size, near] = move_near(array[: quantities.size, near], quantities)
     run = Ensemble(
