@@ -51,7 +51,8 @@ def export_header(rendered: Rendered, method: str) -> str:
 def find_sample(system: System, method: str) -> Sample | None:
     """A run from near the default state; None where nothing near it can be followed.
 
-    It is made by the twin in NumPy, which has the bits of the exact build and compiles nothing.
+    It is made by the twin in NumPy, which has the bits of the exact build and compiles nothing. It
+    begins where runs do, which move attitudes to rotations first.
     """
     try:
         runs = Runs(system)
@@ -64,7 +65,7 @@ def find_sample(system: System, method: str) -> Sample | None:
             (0.0, STEPS * step),
             method=method,
             step=step,
-            samples=1,
+            samples=2,
             target="numpy",
             progress=False,
         )
@@ -74,7 +75,7 @@ def find_sample(system: System, method: str) -> Sample | None:
         return None
     end, size = run.state[:, -1], float(abs(run.state).max())
     return Sample(
-        state=_write(state),
+        state=_write(run.state[:, 0]),
         parameters=_write(pack_parameters(system, None)),
         inputs=_write(pack_inputs(system, None)) if system.INPUTS else (),
         end=_write(end),

@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,14 @@ from coadjoint.prove.declaration import kernel_context
 from coadjoint.prove.methods import judge_methods
 from coadjoint.render.header import find_method, find_obstacle, render_header
 from coadjoint.solve.self_check import Runs
-from coadjoint.systems import heavy_top, quadrotor, rigid_body, so5_body, spacecraft_wheels
+from coadjoint.systems import (
+    heavy_top,
+    quadrotor,
+    rigid_body,
+    so5_body,
+    spacecraft_wheels,
+    two_field_top,
+)
 from tests.kernels import COMPILER
 from tests.programs import program
 from tests.specs import emitted, lowered
@@ -189,6 +197,21 @@ def test_a_spoiled_header_fails_its_test(tested, method, old, new):
     text = (tested / f"{method}.h").read_text()
     assert old in text
     assert run_test(tested, text.replace(old, new, 1), (COMPILER, "-std=c99"), method)[0] == 1
+
+
+def test_the_run_of_a_self_test_begins_at_a_rotation(monkeypatch):
+    """As runs of the library do, which move the start there; the steps of a header do not."""
+    system = two_field_top.system
+    runs, rows = Runs(system), system.STATE.rows("R")
+    near = runs.states.copy()
+    near[rows] *= 1 + 1e-9
+    moved = SimpleNamespace(states=near, step=runs.step)
+    monkeypatch.setattr("coadjoint.export.Runs", lambda _: moved)
+    sample = find_sample(system, "gauss4")
+    start = np.array([float.fromhex(x) for x in sample.state])
+    for state, is_rotation in ((near[:, 0], False), (start, True)):
+        turned = state[rows].reshape(3, 3)
+        assert (abs(turned @ turned.T - np.eye(3)).max() < 4e-16) == is_rotation
 
 
 @needs_compiler
