@@ -20,7 +20,6 @@ from coadjoint.files import read_certificate
 from coadjoint.methods import list_fitting, list_kept, list_unfit
 from coadjoint.notation import written
 from coadjoint.render.document import (
-    FORMATS,
     INDENT,
     WIDTH,
     align,
@@ -36,6 +35,7 @@ from tests.prove.test_declared_charts import PLANE, RATES
 from tests.specs import RIGID_BODY, emitted, spec
 
 ESCAPED = {"text": str, "latex": escape_latex, "html": escape, "typst": escape_typst}
+FORMATS = tuple(ESCAPED)
 HOSTILE = (
     "<script>alert(1)</script>",
     "</title><img src=x onerror=alert(1)>",
