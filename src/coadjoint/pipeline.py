@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from coadjoint.crosscheck.families import crosscheck_family
+from coadjoint.crosscheck.families import RenderedFamily, crosscheck_family
 from coadjoint.crosscheck.ladder import LEVELS, WRITTEN_LEVELS, Report, crosscheck
 from coadjoint.declared import KernelContext
 from coadjoint.derive import Equations, derive, make_setting
@@ -28,7 +28,6 @@ from coadjoint.derive.indexed import derive_family
 from coadjoint.derive.motion import motion_sections
 from coadjoint.derive.reference import Reference
 from coadjoint.derive.splittings import Splitting
-from coadjoint.families import Family
 from coadjoint.lower.check import check_programs, check_sizes
 from coadjoint.lower.families import lower_family
 from coadjoint.lower.family_check import check_loops
@@ -42,39 +41,14 @@ from coadjoint.prove.family_methods import judge_family
 from coadjoint.prove.methods import judge_methods
 from coadjoint.prove.record import certificate_json
 from coadjoint.render.environment import compile_templates
-from coadjoint.render.families import FamilyContext, render_family
+from coadjoint.render.families import render_family
 from coadjoint.render.kernels import render_system
 from coadjoint.solve.folders import load_texts
 from coadjoint.spec import Spec
-from coadjoint.spec.model import Windows
 
 #: Called with the name of the stage that begins.
 Progress = Callable[[str], None]
 STAGES = ("derive", "lower", "prove", "render", "compile and cross-check")
-
-
-@dataclass(frozen=True)
-class RenderedFamily:
-    """What the functions of a system of equal members were made from.
-
-    Attributes:
-        windows: Equations of two small numbers of members, which kernels are compared with.
-        declared: What the spec says of the other members.
-        family: Equations of the generic member.
-        context: What the generated files say.
-        splittings: The windows in the parts whose flows the family has.
-    """
-
-    windows: tuple[Equations, ...]
-    declared: Windows
-    family: Family
-    context: FamilyContext
-    splittings: tuple[Splitting, ...] = ()
-
-    @property
-    def printed(self) -> dict[str, str]:
-        """What the templates print, once more."""
-        return render_family(self.context)
 
 
 @dataclass(frozen=True)
@@ -202,9 +176,7 @@ def verify(
     progress("compile and cross-check")
     with load_texts(rendered.texts, LEVELS if loads else WRITTEN_LEVELS) as system:
         if (own := rendered.family) is not None:
-            given = (own.windows, own.declared, own.family, own.context)
-            texts, splittings = rendered.texts, own.splittings
-            return crosscheck_family(*given, texts, own.printed, system, splittings=splittings)
+            return crosscheck_family(own, rendered.texts, system)
         reference = Reference(rendered.equations)
         maps = rendered.maps
         return crosscheck(rendered.programs, rendered.texts, reference, system, maps=maps)

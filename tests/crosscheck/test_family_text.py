@@ -123,16 +123,7 @@ def test_the_ladder_sees_wrong_loops(rendered, monkeypatch, file, old, new, rung
     texts[file] = texts[file].replace(old, new)
     monkeypatch.setattr(ladder, "POINTS", 2)
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match=f"rung {rung}"):
-        crosscheck_family(
-            own.windows,
-            own.declared,
-            own.family,
-            own.context,
-            texts,
-            texts,
-            system,
-            ("numpy", "python"),
-        )
+        crosscheck_family(own, texts, system, ("numpy", "python"), texts)
 
 
 @pytest.mark.parametrize(
@@ -148,9 +139,8 @@ def test_the_ladder_sees_wrong_series(rendered, name, old, new):
     own, texts = rendered[name].family, dict(rendered[name].texts)
     assert old in texts["solver.py"]
     texts["solver.py"] = texts["solver.py"].replace(old, new)
-    given = (own.windows, own.declared, own.family, own.context, texts, texts)
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match="power series"):
-        crosscheck_family(*given, system, ("numpy",), splittings=own.splittings)
+        crosscheck_family(own, texts, system, ("numpy",), texts)
 
 
 #: Loops of C: how a line of them is spoiled.
@@ -196,34 +186,14 @@ def test_the_ladder_sees_other_bits(rendered):
         "LANES, FEWEST = 8, ", "LANES, FEWEST = 2, "
     )
     with load_texts(texts) as system, pytest.raises(CrossCheckError, match="rung 5"):
-        crosscheck_family(
-            own.windows,
-            own.declared,
-            own.family,
-            own.context,
-            texts,
-            texts,
-            system,
-            ("numpy", "python"),
-            splittings=own.splittings,
-        )
+        crosscheck_family(own, texts, system, ("numpy", "python"), texts)
 
 
 def test_the_ladder_passes_without_a_compiler(rendered):
     """Two targets that need none: 50 digits for both windows, bits for other numbers of members."""
     own, texts = rendered["ring"].family, rendered["ring"].texts
     with load_texts(texts) as system:
-        report = crosscheck_family(
-            own.windows,
-            own.declared,
-            own.family,
-            own.context,
-            texts,
-            own.printed,
-            system,
-            ("numpy", "python"),
-            splittings=own.splittings,
-        )
+        report = crosscheck_family(own, texts, system, ("numpy", "python"))
     assert report.k < 4
     assert report.points > 300
     flows = {f"flow{n}" for n in (1, 2, 3)}  # which call sine and cosine

@@ -55,8 +55,7 @@ def climb(rendered, texts, targets):
     """All rungs for some targets."""
     own = rendered.family
     with load_texts(texts) as system:
-        given = own.windows, own.declared, own.family, own.context
-        crosscheck_family(*given, texts, texts, system, targets)
+        crosscheck_family(own, texts, system, targets, texts)
 
 
 @pytest.mark.parametrize("target", ["numpy", "python", "c"])

@@ -14,8 +14,9 @@ import coadjoint.derive
 from coadjoint.derive.document import document
 from coadjoint.derive.records import write_step
 from coadjoint.derive.theorems import _OF_ROUTES, THEOREMS, find_theorem
-from coadjoint.render.document import FORMATS, render_document
+from coadjoint.render.document import render_document
 from coadjoint.spec.routes import ROUTES
+from tests.render.test_document import FORMATS
 from tests.specs import emitted
 
 #: Keys that are computed: of the route at hand, and of what a spec adds to the rates.

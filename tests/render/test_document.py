@@ -20,7 +20,6 @@ from coadjoint.files import read_certificate
 from coadjoint.methods import list_fitting, list_kept, list_unfit
 from coadjoint.notation import written
 from coadjoint.render.document import (
-    FORMATS,
     INDENT,
     WIDTH,
     align,
@@ -41,6 +40,7 @@ ESCAPED = {
     "html": lambda text: escape(set_accents(text)),
     "typst": escape_typst,
 }
+FORMATS = tuple(ESCAPED)
 HOSTILE = (
     "<script>alert(1)</script>",
     "</title><img src=x onerror=alert(1)>",

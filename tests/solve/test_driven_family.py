@@ -175,6 +175,5 @@ def test_the_ladder_sees_a_time_that_is_lost(monkeypatch, file, old, new):
     assert old in texts[file]
     texts[file] = texts[file].replace(old, new)
     monkeypatch.setattr(ladder, "POINTS", 2)
-    given = (own.windows, own.declared, own.family, own.context, texts, texts)
     with load_texts(texts) as system, pytest.raises(CrossCheckError):
-        crosscheck_family(*given, system)
+        crosscheck_family(own, texts, system, printed=texts)

@@ -130,8 +130,7 @@ def test_flows_of_all_members_are_those_of_the_windows(rendered, name):
 def crosscheck(rendered, texts, system):
     """The ladder without a compiler."""
     own = rendered.family
-    given = (own.windows, own.declared, own.family, own.context, texts, texts, system)
-    return crosscheck_family(*given, ("numpy", "python"), splittings=own.splittings)
+    return crosscheck_family(own, texts, system, ("numpy", "python"), texts)
 
 
 @pytest.mark.parametrize(

@@ -247,8 +247,7 @@ def test_the_ladder_is_climbed(targets):
     rendered = render(LINKED, "kinked")
     own = rendered.family
     with load_texts(rendered.texts) as system:
-        given = (own.windows, own.declared, own.family, own.context)
-        report = crosscheck_family(*given, rendered.texts, own.printed, system, targets)
+        report = crosscheck_family(own, rendered.texts, system, targets)
     for name in ("sided_rhs", "kinks"):
         assert report.lines[name] > 0
         assert all(figures.points > 20 for figures in report.figures[name].values())

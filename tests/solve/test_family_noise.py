@@ -284,9 +284,8 @@ def test_the_ladder_sees_numbers_of_other_processes(rendered, monkeypatch, file,
     assert old in texts[file]
     texts[file] = texts[file].replace(old, new)
     monkeypatch.setattr(ladder, "POINTS", 2)
-    given = (own.windows, own.declared, own.family, own.context, texts, texts)
     with load_texts(texts) as system, pytest.raises(CrossCheckError):
-        crosscheck_family(*given, system, ["numpy", "python"])
+        crosscheck_family(own, texts, system, ["numpy", "python"], texts)
 
 
 def test_the_ladder_passes(rendered):

@@ -74,9 +74,8 @@ def test_every_method_knows_the_number(rotators, method):
 def test_the_ladder_sees_another_number(rendered, rotators, monkeypatch):
     """Rung 4 compares kernels with windows in which n is the number of their members."""
     own, texts = rendered.family, rendered.texts
-    given = (own.windows, own.declared, own.family, own.context, texts, own.printed)
     monkeypatch.setattr(families, "POINTS", 2)
-    assert families.crosscheck_family(*given, rotators).rungs[4] == "passed"
+    assert families.crosscheck_family(own, texts, rotators).rungs[4] == "passed"
     once = Window._name_inputs
 
     def spoil(window, function, point):
@@ -84,7 +83,7 @@ def test_the_ladder_sees_another_number(rendered, rotators, monkeypatch):
 
     monkeypatch.setattr(Window, "_name_inputs", spoil)
     with pytest.raises(CrossCheckError, match="50 digits"):
-        families.crosscheck_family(*given, rotators)
+        families.crosscheck_family(own, texts, rotators)
 
 
 def test_a_document_names_the_number():

@@ -99,9 +99,7 @@ def _report_members(spec: Spec, folder: Path) -> dict[str, Any]:
     assert own is not None, spec.name
     texts = {file: _text(folder / file) for file in rendered.texts}
     report_progress("compile and cross-check", 1, 2)
-    given = (own.windows, own.declared, own.family, own.context)
-    system, splittings = load_folder(folder), own.splittings
-    return crosscheck_family(*given, texts, own.printed, system, splittings=splittings).as_record()
+    return crosscheck_family(own, texts, load_folder(folder)).as_record()
 
 
 def _text(path: Path) -> str:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Final
 
@@ -41,7 +41,7 @@ from coadjoint.derive.splittings import Splitting
 from coadjoint.errors import CrossCheckError
 from coadjoint.families import Family
 from coadjoint.lower.loops import Loops
-from coadjoint.render.families import FamilyContext
+from coadjoint.render.families import FamilyContext, render_family
 from coadjoint.render.kernels import elementary_functions
 from coadjoint.render.targets import BUILDS
 from coadjoint.render.targets.c.loader import ROUNDINGS
@@ -73,46 +73,63 @@ METHODS: Final = (
 BATCHES: Final = ((), (9,))
 
 
+@dataclass(frozen=True)
+class RenderedFamily:
+    """What the functions of a system of equal members, or of fields, were made from.
+
+    Attributes:
+        windows: Equations of two small numbers of members, which kernels are compared with.
+        declared: What the spec says of the other members.
+        family: Equations of the generic member.
+        context: What the generated files say.
+        splittings: The windows in the parts whose flows the family has.
+    """
+
+    windows: tuple[Equations, ...]
+    declared: Windows
+    family: Family
+    context: FamilyContext
+    splittings: tuple[Splitting, ...] = ()
+
+    @property
+    def printed(self) -> dict[str, str]:
+        """What the templates print, once more."""
+        return render_family(self.context)
+
+
 def crosscheck_family(
-    windows: Sequence[Equations],
-    declared: Windows,
-    family: Family,
-    context: FamilyContext,
+    own: RenderedFamily,
     texts: Mapping[str, str],
-    printed: Mapping[str, str],
     system: Any,
     targets: Sequence[str] | None = None,
-    splittings: Sequence[Splitting] = (),
+    printed: Mapping[str, str] | None = None,
 ) -> Report:
     """Run rungs 3, 4 and 5.
 
     Args:
-        windows: The Equations of two small numbers of members.
-        declared: What the spec says of the others.
-        family: Those of the generic member.
-        context: What the texts say.
+        own: What they were made from.
         texts: The files by name.
-        printed: What the templates print.
         system: The loaded system.
         targets: What to compare; by default all, or those that need no compiler without one.
-        splittings: The windows in the parts whose flows the family has.
+        printed: What the templates print, if that was made before.
 
     Raises:
         CompilerError: The compiler does not work, or fails on this kernel.
         CrossCheckError: A rung failed.
     """
     chosen = available_targets() if targets is None else tuple(targets)
+    family, context = own.family, own.context
     loops, steps = context.loops, context.torus is None  # of a plane Python leads the steps
     system = system.points
-    lines = check_family_text(context, texts, printed)
+    lines = check_family_text(context, texts, own.printed if printed is None else printed)
     for target, source in system.load_kernels(chosen).items():
         if source != hashlib.sha256(texts[BUILDS[target].kernel].encode()).hexdigest():
             raise CrossCheckError.on(
                 3, system.name, f"the target {target} was not loaded from this text"
             )
     figures: dict[str, dict[str, Figures]] = {name: {} for name in loops}
-    for equations, splitting in zip_longest(windows, splittings):
-        window = Window.of(equations, declared, family, splitting)
+    for equations, splitting in zip_longest(own.windows, own.splittings):
+        window = Window.of(equations, own.declared, family, splitting)
         for name, each in loops.items():
             _check_window(window, each, system, chosen, figures[name])
         sized = _resize(system, window.size)

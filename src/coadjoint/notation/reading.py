@@ -36,7 +36,9 @@ from coadjoint.notation.written import (
 
 #: An initial of a name, behind no letter or sign of a formula: R. Montgomery. Where the letter is
 #: that of something, a sentence ends behind it: at the rate W. Its centre.
-_INITIAL: Final = r"(?<![-+*/^(=])(?<![-+*/^=<>] )(?<!\b[A-Za-z] )[A-Z]\.(?= (?:[A-Z]\. |[A-Z][a-z]))"
+_INITIAL: Final = (
+    r"(?<![-+*/^(=])(?<![-+*/^=<>] )(?<!\b[A-Za-z] )[A-Z]\.(?= (?:[A-Z]\. |[A-Z][a-z]))"
+)
 _TOKEN: Final = re.compile(
     r"(?P<word>[A-Za-z]\w*(?:-[A-Za-z]\w*)+|\d+-[A-Za-z]\w*|[A-Za-z]+'s\b)"  # Lie-Poisson, 2-form
     rf"|(?P<initial>{_INITIAL})"

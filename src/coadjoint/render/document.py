@@ -26,7 +26,6 @@ from coadjoint.render.prose import ESCAPES, Prose, set_prose
 from coadjoint.render.strict import make_environment
 from coadjoint.render.sums import break_inline, fit_paper, fit_phone, is_narrow, split_sides
 
-FORMATS: Final = ("text", "latex", "html", "typst")
 #: Columns of the text format; longer formulas go on under their right-hand side.
 WIDTH: Final = 100
 #: Columns that the text format leaves at the left of formulas.
