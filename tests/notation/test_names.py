@@ -91,7 +91,7 @@ def test_members_have_their_place_below():
     [
         ("q_pairs", r"q_{i,\mathrm{pairs}}"),  # two subscripts of one letter do not compile
         ("p2_pairs", r"p_{i,\mathrm{pairs},2}"),
-        ("rolling_reaction2", r"\mathrm{rolling\ reaction}_{i,2}"),
+        ("rolling_reaction2", r"\lambda_{i,\mathrm{rolling},2}"),
         ("u_ss", r"\partial_s^2 u_i"),
     ],
 )
@@ -201,9 +201,9 @@ def test_components_keep_their_numbers_in_text(formula, text):
 
 def test_a_name_of_several_words_is_not_cut():
     """At a plain blank within one element a narrow column of a table ends, and loses the rest."""
-    shown = re.sub("<[^>]*>", "", name("plane_reaction").mathml)
+    shown = re.sub("<[^>]*>", "", name("normal_force").mathml)
     assert " " not in shown
-    assert "reaction" in shown
+    assert "force" in shown
     ET.fromstring(f"<math>{name('<p> & q').mathml}</math>")
 
 
@@ -302,3 +302,10 @@ def test_a_hat_stands_over_a_symbol_and_a_wedge_behind_a_product():
     assert product.mathml.endswith("<mo>∧</mo></msup>")
     assert "mover" not in product.mathml
     assert product.typst.endswith("^(and)")
+
+
+def test_the_force_of_a_constraint_is_a_multiplier():
+    """Also in components, with the name of the constraint below."""
+    assert name("twistless_reaction").latex == r"\lambda_{\mathrm{twistless}}"
+    assert name("rolling_reaction2").latex == r"\lambda_{\mathrm{rolling},2}"
+    assert name("twistless_reaction").text == "twistless_reaction"

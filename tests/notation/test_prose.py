@@ -247,3 +247,12 @@ def test_formulas_of_sentences_ask_for_no_style():
     )
     assert "<mover>" in shown
     assert "style" not in shown
+
+
+def test_long_absolute_values_go_on_lines_below():
+    """A measure's density of many terms, whose exponent has no brackets, has a place to end."""
+    terms = " + ".join(f"a{n}*b{n}" for n in range(30))
+    (formula,) = (part for part in read_prose(f"|{terms}|^(-1)") if not isinstance(part, str))
+    assert formula.written.latex.startswith(r"\lvert a_0")
+    assert formula.written.latex.endswith(r"\rvert^{-1}")
+    assert formula.written.mathml.count("<mtr>") > 3

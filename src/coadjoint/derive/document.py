@@ -224,7 +224,8 @@ def _observables(equations: Equations, names: Names) -> Iterator[Section]:
         for n, each in enumerate(spec.casimirs, 1)
     ]
     lines += [
-        equal(symbol(each.name), names.write(each.formula.typed)) for each in spec.observables
+        equal(names.write(tree.Name(each.name)), names.write(each.formula.typed))
+        for each in spec.observables
     ]
     named = {each.name for each in spec.symmetries} | {each.name for each in spec.sections}
     lines += [

@@ -49,6 +49,7 @@ class Names:
         quantities: list[Any] = [*spec.variables, *spec.parameters, *spec.inputs, *spec.jets]
         shapes = {each.name: value_shape(each) for each in quantities}
         shapes |= {each.name: each.shape for each in spec.definitions if each.shape}
+        shapes |= {each.name: each.shape for each in spec.observables if each.shape}
         if spec.family is not None:
             for name, shape in list(shapes.items()):
                 shapes.setdefault(name.rpartition("_")[0], shape)

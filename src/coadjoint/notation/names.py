@@ -182,6 +182,12 @@ def _split_name(text: str, *, bold: bool) -> tuple[Written, list[Written]]:
     if parts is None:
         return _word(text, bold=bold), []
     below = [number(int(each)) for each in (parts["numbers"] or "").split("_") if each]
+    constraint = parts["base"].removesuffix("_reaction")
+    if constraint != parts["base"]:  # a multiplier
+        return _letter("lambda", bold=bold) or _word(text, bold=bold), [
+            _word(constraint, bold=False),
+            *below,
+        ]
     base, words = _split_word(parts["base"])
     inner = _PARTS.fullmatch(base)
     if words and inner is not None and inner["numbers"]:  # p1_pairs

@@ -221,6 +221,12 @@ class Reading:
         if self._peek() == "-":
             self.at += 1
             return power(base, negate(self._atom()))
+        ahead = [each[0] for each in self.tokens[self.at : self.at + 4]]
+        if len(ahead) == 4 and (*ahead[:2], ahead[3]) == ("(", "-", ")"):  # needs no brackets there
+            self.at += 2
+            exponent = negate(self._atom())
+            self.at += 1
+            return power(base, exponent)
         return power(base, self._atom())
 
     def _atom(self) -> Written:

@@ -310,9 +310,11 @@ def power(base: Written, exponent: Written | int) -> Written:
     raised = add([raised]) if raised.sign < 0 else raised
     own = bracket(base, ATOM)
     shown = raised.text if raised.level == ATOM else f"({raised.text})"
+    # TeX ends no line within braces, which a long absolute value does without
+    latex = own.latex if own.latex.startswith(r"\lvert") else f"{{{own.latex}}}"
     return Written(
         text=f"{own.text}^{shown}",
-        latex=f"{{{own.latex}}}^{{{raised.latex}}}",
+        latex=f"{latex}^{{{raised.latex}}}",
         mathml=f"<msup>{own.mathml}{raised.mathml}</msup>",
         typst=f"{own.typst}^({raised.typst})",
         level=POWER,
@@ -406,7 +408,7 @@ def enclose(parts: Sequence[Written], marks: str = "[]") -> Written:
     return Written(
         text=first + ", ".join(part.text for part in inner) + last,
         latex=opens + ", ".join(part.latex for part in inner) + closes,
-        mathml=row(*fence(shown[0], operator(",").join(p.mathml for p in inner), shown[1])),
+        mathml=row(*fence(shown[0], operator(",").join(map(fold, inner)), shown[1])),
         typst=f"abs({typst})" if first == "|" else f"{shown[0]}{typst}{shown[1]}",
     )
 

@@ -18,7 +18,7 @@ from coadjoint.render.widths import PAPER, SMALLEST, measure
 #: Width of a right side, in sizes of letters, up to which it stays in one piece.
 WHOLE: Final = 12.0
 #: Width of a line of a phone, and the smallest part of the size of letters to be read there.
-PHONE, SMALL = 19.0, 0.65
+PHONE, SMALL = 18.0, 0.65
 #: Room before a sum of several lines, and before a right side below the left one.
 HANGING, INDENT = 2.0, 1.0
 #: Width of an equation up to which two of them stand side by side on paper.
