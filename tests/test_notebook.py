@@ -17,13 +17,13 @@ from coadjoint.derive import derive
 from coadjoint.derive.motion import motion_sections
 from coadjoint.derive.vectors import vector_form
 from coadjoint.files import read_certificate
-from coadjoint.loading import load
+from coadjoint.loading import _tell, load
 from coadjoint.prove import prove
 from coadjoint.prove.certificate import Certificate, Claim, Verdict
 from coadjoint.prove.examination import examine
 from coadjoint.prove.record import motion_record
 from coadjoint.spec import read_spec
-from coadjoint.systems import chaplygin_sleigh, heavy_top, rigid_body
+from coadjoint.systems import chaplygin_sleigh, heavy_top, rigid_body, spin_chain
 from tests.specs import emitted, shipped
 
 
@@ -234,6 +234,39 @@ def test_equations_stand_below_each_other_by_a_style_of_their_own(shown):
     rules, body = page.split("</style>")
     assert re.search(r"\.formulas \{.*\.lines \{ display: grid", rules, re.DOTALL)
     assert body.strip().startswith('<div class="formulas">')
+
+
+def test_styles_of_a_fragment_are_rules_of_its_class(shown):
+    """Each opens and ends within the one class: tables of others in a notebook keep theirs."""
+    for each in ("spec", "certificate", "system", "solution"):
+        for rules in re.findall("<style>(.*?)</style>", shown[each]._repr_html_(), re.DOTALL):
+            assert rules.strip().startswith(".formulas {")
+            depth = 0
+            for n, sign in enumerate(rules.strip()):
+                depth += {"{": 1, "}": -1}.get(sign, 0)
+                assert depth > 0 or n < len(".formulas {") or n == len(rules.strip()) - 1
+            assert "&.formulas :is(td, th) { text-align: left" in rules
+
+
+def test_a_field_is_shown_by_its_first_values():
+    """Of 256 points some are listed, in HTML and as text; of a vector all."""
+    text = repr(spin_chain.system.STATE)
+    assert max(map(len, text.splitlines())) < 130
+    assert spin_chain.system.STATE._repr_html_().count("0.999") == 1
+    assert "1, 2, 3" in repr(heavy_top.system.PARAMETERS)
+
+
+def test_loading_in_a_notebook_tells_its_stages_where_results_stand(monkeypatch, capsys):
+    """What is written to the stream of errors is red there; without a notebook nothing is told."""
+    with _tell(None) as tell:
+        tell("sample", "prove", 2, 5)
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+    with _tell(None) as tell:
+        tell("sample", "prove", 2, 5)
+    out, err = capsys.readouterr()
+    assert out.startswith("\rsample: prove (2 of 5)")
+    assert err == ""
 
 
 @pytest.mark.parametrize(

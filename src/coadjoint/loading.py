@@ -104,14 +104,16 @@ def _tell(progress: Progress | None) -> Iterator[Progress]:
     if progress is not None:
         yield progress
         return
-    shown = sys.stderr is not None and (sys.stderr.isatty() or "ipykernel" in sys.modules)
+    notebook = "ipykernel" in sys.modules  # which shows what is written to stderr as a failure
+    stream = sys.stdout if notebook else sys.stderr
+    shown = stream is not None and (notebook or stream.isatty())
 
     def tell(system: str, stage: str, done: int, total: int) -> None:
-        sys.stderr.write(f"\r{system}: {stage} ({done} of {total})".ljust(60))
-        sys.stderr.flush()
+        stream.write(f"\r{system}: {stage} ({done} of {total})".ljust(60))
+        stream.flush()
 
     try:
         yield tell if shown else lambda *_: None
     finally:
         if shown:
-            sys.stderr.write("\r" + " " * 60 + "\r")
+            stream.write("\r" + " " * 60 + "\r")

@@ -13,7 +13,7 @@ from coadjoint.declared import Quantity
 from coadjoint.errors import KernelArgumentError
 
 #: Most names, or values, that are listed for a person.
-LISTED = 40
+LISTED = 9
 
 
 class Quantities(Mapping[str, Quantity]):
@@ -127,7 +127,7 @@ def _list(texts: Sequence[str]) -> str:
     """Texts in order; of many the first ones and the last.
 
     >>> _list(["a", "b"]), len(_list(["0"] * 30000))
-    ('a, b', 123)
+    ('a, b', 30)
     """
     if len(texts) > LISTED:
         texts = [*texts[: LISTED - 1], "...", texts[-1]]
