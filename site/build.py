@@ -17,7 +17,7 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -239,8 +239,10 @@ def lay_out(systems: Sequence[Made], book: Path | None = None) -> None:
     shutil.copytree(ROOT / "examples", SOURCE / "examples", ignore=leave_out)
     specs = SOURCE / "docs" / "specs.md"
     specs.write_text(_below_one_title(specs.read_text(encoding="utf-8")), encoding="utf-8")
+    drawn = {made.name for made in systems}
     for path in (SOURCE / "examples").glob("*.py"):
-        path.write_text(_with_title(path.read_text(encoding="utf-8")), encoding="utf-8")
+        script = _with_title(path.read_text(encoding="utf-8"))
+        path.write_text(script + _choose_thumbnail(script, drawn), encoding="utf-8")
     for folder in ("docs/howto", "docs/decisions"):  # what their first pages list as tables
         with (SOURCE / folder / "README.md").open("a", encoding="utf-8") as page:
             page.write("\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n")
@@ -282,6 +284,14 @@ def _with_title(script: str) -> str:
     prose, code = script.removeprefix('"""').split('"""', 1)
     first, rest = prose.replace("|", r"\|").split("\n", 1)
     return f'r"""{first.rstrip(".")}\n{"=" * len(first)}\n{rest}"""{code}'
+
+
+def _choose_thumbnail(script: str, drawn: Collection[str]) -> str:
+    """The comment that names the picture of an example: that of the first system it imports."""
+    found = re.search(r"^from coadjoint\.systems import (\w+)", script, re.MULTILINE)
+    own = found[1] if found and found[1] in drawn else ""
+    place = f"_static/pictures/{own}.png" if own else "docs/pictures/gyrostat.png"
+    return f"\n# sphinx_gallery_thumbnail_path = '{place}'\n"
 
 
 def _write(name: str, text: str) -> None:

@@ -86,6 +86,28 @@ def test_equations_have_the_style_of_documents(site):
     assert style.splitlines()[0] in render_document(asdict(document(emitted("rigid_body"))), "html")
 
 
+def test_an_example_has_the_picture_of_its_system(site):
+    """Of the first one that it imports; without any, that of the system of the tutorial."""
+    choose = site["_choose_thumbnail"]
+    script = "import numpy\n\nfrom coadjoint.systems import rattleback\n"
+    assert "'_static/pictures/rattleback.png'" in choose(script, {"rattleback"})
+    for other, drawn in ((script, {"kepler"}), ("import numpy\n", {"rattleback"})):
+        (place,) = re.findall("'(.*)'", choose(other, drawn))
+        assert (ROOT / place).is_file()
+
+
+def test_the_picture_of_a_page_is_that_of_its_document(site):
+    """With its caption, as HTML; a document without one is told."""
+    figure = (
+        '<figure><img src="data:image/png;base64,{}" alt="">\n<figcaption>x &lt; 1</figcaption>'
+    )
+    page = figure.format("iVBORw0=")
+    assert site["find_picture"](page) == b"\x89PNG\r"
+    assert site["find_caption"](page) == "x &lt; 1"
+    with pytest.raises(AssertionError):
+        site["find_picture"]("<p>without</p>")
+
+
 def test_a_page_of_parts_has_one_title(site):
     """Headings move down by one below the first part, and comments in code stay."""
     page = "# A\n\ntext\n\n## B\n\n```toml\n# a comment\n```\n\n# C\n\n## D\n"
