@@ -15,12 +15,17 @@ from coadjoint.derive.document import document
 from coadjoint.derive.records import write_step
 from coadjoint.derive.theorems import _OF_ROUTES, THEOREMS, find_theorem
 from coadjoint.render.document import render_document
+from coadjoint.render.prose import ESCAPES
 from coadjoint.spec.routes import ROUTES
 from tests.render.test_document import FORMATS
 from tests.specs import emitted
 
 #: Keys that are computed: of the route at hand, and of what a spec adds to the rates.
-COMPUTED = {"route": {"poisson", "lie-poisson"}, "relaxation": {"double-bracket", "metriplectic"}}
+COMPUTED = {
+    "route": {"poisson", "lie-poisson"},
+    "relaxation": {"double-bracket", "metriplectic"},
+    "rests": {"advection", "euler-poincare"},
+}
 
 
 def steps_of(folder):
@@ -90,7 +95,7 @@ def test_documents_show_the_theorem_of_each_step(form, route):
     assert len(steps) == len(found.steps) > 3
     assert all(each["theorem"] for each in steps)
     text = " ".join(render_document(record, form).split())
-    shown = {"typst": lambda text: text.replace("-", r"\-")}.get(form, str)
+    shown = ESCAPES.get(form, str)
     for each in steps:
         assert text.count(f"By: {shown(each['theorem'])}") == sum(
             other["theorem"] == each["theorem"] for other in steps

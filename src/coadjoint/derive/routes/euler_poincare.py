@@ -121,6 +121,7 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
     carried, carried_latex = f",  da/dt = {back}rho(xi) a", rf", \qquad \dot a = {back}\rho(\xi) a"
     if not advected:
         force = force_latex = carried = carried_latex = ""
+    rests = "advection" if advected else "euler-poincare"
     moved, moved_latex = _tell_coordinates(setting)
     turned = sign_text(setting.sign, f"ad*_xi mu{force}")
     turned_latex = sign_text(setting.sign, rf"\mathrm{{ad}}^*_\xi \mu{force_latex}")
@@ -139,6 +140,6 @@ def _steps(setting: Setting, rates: tuple[Element, ...]) -> tuple[Step, ...]:
             f"dmu/dt = {turned}{carried}{moved}",
             rf"\dot\mu = {turned_latex}{carried_latex}{moved_latex}",
             write_rates(setting.state, rates),
-            by="advection" if advected else "euler-poincare",
+            by=rests,
         ),
     )
