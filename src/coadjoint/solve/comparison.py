@@ -65,16 +65,14 @@ def compare_steps(
     solved = False
     for asked, most, keeps in [*runs, *([] if choice.name == "taylor" else [(2.0**-9, 9, False)])]:
         room = most * PROBES + ROOM
-        for size in (asked * part for part in PARTS):
-            expected, other = (
-                _probe(system, choice, size, most),
-                Record.make(n, choice.degree, room),
-            )
+        for part in PARTS:
+            probe = partial(_probe, system, choice, asked * part, most, is_near=part < 1.0)
+            expected, other = probe(), Record.make(n, choice.degree, room)
             twin.advance(expected, 0, PROBES, 1000, other if keeps else None)
-            if not size or _has_solved(expected):
+            if not asked or _has_solved(expected):
                 break
-        solved |= size > 0 and _has_solved(expected)
-        found, one = _probe(system, choice, size, most), Record.make(n, choice.degree, room)
+        solved |= asked > 0 and _has_solved(expected)
+        found, one = probe(), Record.make(n, choice.degree, room)
         while fresh.advance(found, 0, PROBES, 2 if keeps else 6, one if keeps else None):
             pass  # calls that break off now and then, so that this is compared as well
         same = _agree(found, expected, kept, exact=exact)
