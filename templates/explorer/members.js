@@ -91,6 +91,7 @@ class MembersScene extends Scene {
     return [clamp(to[0] * this.wide / 2, low, high), ...(held.length > 1 ? [2 * to[2] * this.high] : [])];
   }
   sample() {
+    if (scene.shape === "stems" && !this.ordered) this.high = Math.max(this.high, ...this.shown.map((i) => 0.9 * Math.abs(this.vector(i)[0]))); // a row that grows stays in the picture
     if (!this.traced || this.shown.length > 24) return;
     this.places().forEach((p, k) => this.trail(this.shown[k]).add(p, 0.015 * this.extent));
   }

@@ -154,7 +154,7 @@ class SpherePanel {
     return dot(at, eye) < 1 && s > 0 && s < 1 && norm(plus(eye, scaled(s, along))) < 1;
   }
   tellClosed() {
-    return `Components against ${scene.clock.name}. ${model.integrals.length ? "This motion is one closed level curve: a section of it would be one dot." : "The state has no more rows than these, so that a section would be dots on one curve."}`;
+    return `Components against ${scene.clock.name}. ${model.integrals.length && !scene.noise ? "This motion is one closed level curve: a section of it would be one dot." : "The state has no more rows than these, so that a section would be dots on one curve."}`;
   }
 
   /* Put the point in a direction: a vertical by turning the body, anything else by itself. */

@@ -590,6 +590,29 @@ def test_an_orbit_is_drawn_by_its_steps_and_not_by_frames(page, pages):
     assert page.run("explorer.view.trail(0).points.length") > 100
 
 
+def test_a_row_that_grows_stays_in_the_picture(page, pages):
+    """The open lattice of Toda drifts apart: its scale follows, as that of the start does not."""
+    show(page, pages("toda_lattice"), calm=True)
+    tallest = "Math.max(...explorer.view.places().map(p => Math.abs(p[2])))"
+    high, before = page.run(f"[explorer.view.high, {tallest}]")
+    page.run(
+        "for (let k = 0; k < 3000 && explorer.model.clock[0] < 6; k++) "
+        "{ explorer.model.step(explorer.model.h); explorer.view.sample(); }"
+    )
+    assert page.run(tallest) <= 0.45
+    page.run(f"explorer.view.high = {high}")
+    assert page.run(tallest) > 1.5 * before
+
+
+def test_components_of_a_motion_with_noise_are_no_closed_curve(page, pages):
+    """Noise crosses the levels of the energy: only a motion without it is closed."""
+    show(page, pages("stochastic_rigid_body"), calm=True)
+    page.run("document.getElementById('cut').click()")
+    told = page.run("document.getElementById('section-told').textContent")
+    assert "no more rows" in told
+    assert "closed" not in told
+
+
 def test_casimirs_have_the_letter_of_documents(page, pages):
     """In the list of what is conserved, and in what the page says of its method."""
     show(page, pages("heavy_top"), calm=True)
