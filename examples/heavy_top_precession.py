@@ -1,8 +1,8 @@
-"""Precession of a fast top against the old rule of thumb: m g chi / (I3 Omega3).
+"""Precession of a fast top against the old rule of thumb.
 
-A symmetric top whose spin dominates gravity turns about the vertical at about that rate, nodding
-as it goes. The angle about the vertical is not part of the state; its rate follows from the
-components of the angular momentum: (Pi.Gamma - Pi3 Gamma3) / (I1 (1 - Gamma3^2)).
+A symmetric top whose spin dominates gravity turns about the vertical at about the rate m g chi /
+(I3 Omega3), nodding as it goes. The angle about the vertical is not part of the state; its rate
+follows from the components of the angular momentum: (Pi.Gamma - Pi3 Gamma3) / (I1 (1 - Gamma3^2)).
 """
 
 from __future__ import annotations

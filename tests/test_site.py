@@ -86,6 +86,21 @@ def test_equations_have_the_style_of_documents(site):
     assert style.splitlines()[0] in render_document(asdict(document(emitted("rigid_body"))), "html")
 
 
+def list_ascii(page):
+    """Lines of a page that show a formula as code: indented, outside of fences and of lists."""
+    text = re.sub(r"^```.*?^```", "", page, flags=re.DOTALL | re.MULTILINE)
+    return re.findall(r"^(?![-*\d ]|    ).*\n\n    (\S.*=.*)$", text, re.MULTILINE)
+
+
+def test_pages_set_their_formulas():
+    """A formula on a line of its own is between dollars, and not code."""
+    pages = [path for path in (ROOT / "docs").rglob("*.md") if not path.name.endswith(".in.md")]
+    assert len(pages) > 20
+    assert {path.name: found for path in pages if (found := list_ascii(path.read_text()))} == {}
+    assert list_ascii("The law is\n\n    dp/dt = F.\n") == ["dp/dt = F."]
+    assert list_ascii("The law is\n\n$$\n\\dot p = F\n$$\n") == []
+
+
 def test_an_example_has_the_picture_of_its_system(site):
     """Of the first one that it imports; without any, that of the system of the tutorial."""
     choose = site["_choose_thumbnail"]
