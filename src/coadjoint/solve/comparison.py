@@ -9,6 +9,7 @@ Read next: `coadjoint.solve.solvers`.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
