@@ -159,7 +159,7 @@ def test_scalars_stand_with_vectors_and_before_them():
     assert [line.text for line in motion.vectors][1:] == [
         "dK/dt = K x (diag(I)^(-1) J) - E P/c - M diag(B)^(-1) P",
         "dP/dt = M diag(A)^(-1) K + P x (diag(I)^(-1) J)",
-        "dE/dt = K1*P1/A1 + K2*P2/A2 + K3*P3/A3",
+        "dE/dt = P . (diag(A)^(-1) K)",
         "dM/dt = 0",
     ]
     assert motion.law.startswith("by vectors, each line found equal")

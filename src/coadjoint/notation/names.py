@@ -95,7 +95,7 @@ def name(text: str, *, bold: bool = False, dot: bool = False) -> Written:
     >>> name("Gamma^1_11").latex
     '\\Gamma_{11}^{1}'
     >>> name("M_1_10").latex, name("rolling_reaction2").latex, name("M_vpsi").latex
-    ('M_{1,10}', '\\mathrm{rolling\\ reaction}_2', 'M_{v_{\\psi}}')
+    ('M_{1,10}', '\\lambda_{\\mathrm{rolling},2}', 'M_{v_{\\psi}}')
     >>> name("_k1").latex
     '\\tilde{k}_1'
     >>> name("phidot").latex, name("phidot", dot=True).latex, name("M_phidot1").latex

@@ -198,7 +198,7 @@ def list_rows(rows: Sequence[Sequence[Any]], width: int = WIDTH) -> list[str]:
     >>> list_rows([["name", "unit"], ["m", "kg"]])
     ['name  unit', 'm     kg']
     >>> list_rows([["claim", "verdict"], ["the energy is conserved", "proved"]], 28)
-    ['the energy is conserved', '  verdict: proved']
+    ['the energy is', 'conserved', '  verdict: proved']
     """
     texts = [[cell["text"] if isinstance(cell, Mapping) else str(cell) for cell in r] for r in rows]
     if any(isinstance(row[0], Mapping) for row in rows):
@@ -336,8 +336,8 @@ def tabulate(rows: Sequence[Sequence[Mapping[str, str]]], width: int = WIDTH) ->
     ['   |   H   X', '---+--------', ' H |   . 2*X']
     >>> tabulate(table, 14)
     ['   |   H', '---+----', ' H |   .', '', '   |   X', '---+----', ' H | 2*X']
-    >>> tabulate(table, 12)
-    ['H, X: 2*X']
+    >>> tabulate(table, 13)
+    ['H, X:', '    2*X']
     """
     heads, *others = [[cell["text"] for cell in row] for row in rows]
     first = max(len(row[0]) for row in (heads, *others))

@@ -261,8 +261,10 @@ def _draw_paths(figure: Any, place: Any, solution: Solution, paths: Paths) -> No
         # in space the letter of an axis is at the right
         place = {"bbox_to_anchor": (1.08, 0.5)} if in_space else {}
         axes.legend(fontsize=8, frameon=False, **{**AT_RIGHT, **place})
-    told = f"; between the spheres |{symbol_label(paths.names[0][:-1])}| = {{:.4g}} and {{:.4g}}"
-    spheres = told.format(*paths.radii) if paths.radii else ""
+    spheres = ""
+    if paths.radii:
+        letter, (low, high) = symbol_label(paths.names[0][:-1]), paths.radii
+        spheres = f"; between the spheres |{letter}| = {low:.4g} and {high:.4g}"
     axes.set_title(f"open circle: start, filled: end{spheres}", fontsize=9, color="#5b6570")
 
 
