@@ -379,13 +379,15 @@ def test_a_free_body_rolls_on_its_plane_and_shows_components(page, pages):
 
 @pytest.mark.parametrize("name", ["heavy_top", "euler_disk", "snakeboard"])
 def test_a_frame_takes_less_than_a_sixtieth_of_a_second(page, pages, name):
-    """Over five seconds of a motion, the script is done with a frame in the time of one."""
+    """Over five seconds or more, the script is done with a frame in the time of one.
+
+    How many there are depends on the machine: without a graphics card some three in a second.
+    """
     show(page, pages(name))
     page.run("explorer.costs.length = 0")
     began = page.run("performance.now()")
-    page.wait(f"performance.now() - {began} > 5000")
+    page.wait(f"performance.now() - {began} > 5000 && explorer.costs.length > 20")
     costs = np.array(page.run("explorer.costs"))
-    assert costs.size > 20
     assert np.median(costs) < 16
 
 
