@@ -1,8 +1,8 @@
 """Comparison: a solver that was compiled against its NumPy twin, over a few steps.
 
 Comes in: both. Goes out: whether they went the same way. It is asked once for each object, before
-that enters the cache. Steps that fail tell little: states are near the default one where a domain
-or constraints leave no room elsewhere, and steps are shorter where the twin solves none.
+that enters the cache. A comparison of failed steps shows little. So states are near the default
+where a domain or constraints require it, and steps are shortened where the twin solves none.
 Read next: `coadjoint.solve.solvers`.
 """
 
@@ -35,12 +35,13 @@ if TYPE_CHECKING:
 PROBES: Final = 11
 #: The most steps of each.
 MOST_STEPS: Final = 4
-#: What is drawn is between these, or a default plus this part of its size times that.
+#: Bounds of random numbers; near a default they are multiplied by this part of its size and added.
 DRAWN: Final = (0.5, 2.0)
 NEAR: Final = 0.01
-#: The parts of a step that are tried until the twin solves some; shorter ones near the default.
+#: Factors of the step, tried in turn until the twin solves some steps; all but the first start
+#: near the default state.
 PARTS: Final = (1.0, 2.0**-6, 2.0**-12)
-#: What becomes of members whose steps fail.
+#: Statuses of members whose steps fail.
 FAILED: Final = (Status.NONFINITE, Status.NOT_SOLVED, Status.STEP_UNDERFLOW)
 
 
@@ -51,8 +52,8 @@ def compare_steps(
 
     Steps that follow tolerances are compared where bits are promised; elsewhere a rounding may
     decide whether a step is accepted, so that steps are fixed. Where nobody records them, C makes
-    several fixed steps before it looks at them; this is compared as well. It is said where the twin
-    solves none of the fixed steps: then failures alone were compared.
+    several fixed steps before it looks at them; this is compared as well. Where the twin
+    solves none of the fixed steps, only failures were compared, and a warning says so.
 
     Raises:
         CrossCheckError: They differ.
@@ -96,7 +97,7 @@ def compare_steps(
 
 
 def move_near(drawn: Array, quantities: Quantities) -> Array:
-    """Numbers ``(n, N)`` that were drawn as `DRAWN` says, moved to the defaults of quantities."""
+    """States or parameters ``(n, N)`` near the defaults of quantities, from numbers in `DRAWN`."""
     centers = [np.array(quantity.center) for quantity in quantities.values()]
     sizes = [np.full(len(each), np.abs(each).max() or 1.0) for each in centers]
     center, size = (np.concatenate([*parts, ()])[:, np.newaxis] for parts in (centers, sizes))
@@ -104,7 +105,7 @@ def move_near(drawn: Array, quantities: Quantities) -> Array:
 
 
 def _has_solved(run: Ensemble) -> bool:
-    """Whether a member made steps, and none of them failed."""
+    """Whether at least one member made steps of which none failed."""
     return bool(((run.steps > 0) & ~np.isin(run.status, FAILED)).any())
 
 
@@ -137,9 +138,9 @@ def _probe(
 ) -> Ensemble:
     """A few members at the start of a few steps, driven by two lines, with four samples.
 
-    All are near the default where that is asked for, and where states are projected: from far off
-    this may lead nowhere. Every other one is where there is a domain: those elsewhere may leave it,
-    which is compared as well.
+    All members start near the default where `is_near` says so, and where states are projected onto
+    constraints, since the projection may diverge from elsewhere. Where the system has a domain,
+    every second member does; the others may leave the domain, which is compared as well.
     """
     rows = count_rows(system, choice)
     source = np.random.default_rng(0)
