@@ -104,7 +104,8 @@ def test_a_page_draws_what_moves_without_errors(page, pages, name):
     """No console error and no request; the canvas shows more than a floor, and changes."""
     show(page, pages(name))
     colours, first = page.run(COLOURS)
-    page.wait("explorer.model.clock[0] > 0.05")
+    clock, frames = page.run("[explorer.model.clock[0], explorer.frames()]")
+    page.wait(f"explorer.model.clock[0] > {clock + 0.05} && explorer.frames() > {frames + 1}")
     _, later = page.run(COLOURS)
     assert colours > 8, name
     assert first != later, name
