@@ -38,13 +38,31 @@ from coadjoint.systems import (
     sphere_vortices,
     stochastic_rigid_body,
 )
-from tests.specs import render_claims
+from tests.specs import render_claims, spec
 
 #: Rows of the state of a body on an orbit: its place, after two momenta.
 POSE = [[9, 13, 17]]
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 pytest.importorskip("matplotlib", reason="the extra 'plot' is not installed")
+
+#: Two particles in a plane, one row of a matrix each, on a spring.
+PAIR = """
+title = "Two particles on a spring"
+source = "Newton"
+routes = ["euler-lagrange"]
+
+[variables]
+r = { role = "coordinate", shape = [4], form = "matrix", default = [1, 0, 0, 1], unit = "m" }
+v = { role = "velocity", of = "r", default = [0, 1, 0, -1], unit = "m/s" }
+
+[parameters]
+m = { positive = true, default = 1, unit = "kg" }
+k = { positive = true, default = 1, unit = "kg/s^2" }
+
+[lagrangian]
+l = "m*trace(transpose(v)*v)/2 - k*norm(r[1] - r[2])^2/2"
+"""
 
 
 def test_orbits_are_found_by_their_unit():
@@ -167,6 +185,17 @@ def test_places_are_found_in_scalars_rows_and_poses(module, state, count, rows):
     assert len(paths.members) == count
     for member, own in zip(paths.members, rows, strict=True):
         np.testing.assert_array_equal(member, motion.state[own])
+
+
+@pytest.mark.parametrize(
+    ("stretch", "count"), [("r[1] - r[2]", 2), ("r[1] - 2*r[2]", None)], ids=["between", "held"]
+)
+def test_rows_of_a_plane_are_places_where_a_shift_changes_no_rate(stretch, count):
+    """Two particles with a spring between them; with one end in space the rows are no places."""
+    declared = spec(PAIR, ("r[1] - r[2]", stretch)) if count is None else spec(PAIR)
+    with load_texts(render_claims(declared).texts) as system:
+        paths = find_paths(system.simulate(None, (0, 1), samples=20))
+    assert (paths and len(paths.members)) == count
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

@@ -11,6 +11,7 @@ import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isqrt
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -135,7 +136,7 @@ def _find_places(solution: Solution, name: str) -> Array | None:
     held = np.array([each == _LENGTH for each in (units if len(units) > 1 else units * count)])
     values = np.asarray(solution[name])
     if _are_rows(solution, name) and held.all():
-        return values.reshape(3, 3, -1)
+        return values.reshape(isqrt(count), isqrt(count), -1)
     if not held.any() or not 1 <= len(quantity.shape) <= 2 or quantity.shape[0] not in (2, 3):
         return None
     columns = held.reshape(quantity.shape[0], -1)  # (dimensions, members)
@@ -145,13 +146,15 @@ def _find_places(solution: Solution, name: str) -> Array | None:
 
 
 def _are_rows(solution: Solution, name: str) -> bool:
-    """Whether nine components are three places, one below the other, that can be shifted."""
+    """Whether rows of a square matrix, component by component, are places that can be shifted."""
     system = solution.system
     quantity = system.STATE[name]
-    if quantity.shape != (9,) or quantity.components[1] != f"{name}12":
+    width = isqrt(len(quantity.components))
+    is_matrix = quantity.shape == (width**2,) and f"{name}12" in quantity.components
+    if not is_matrix or width not in (2, 3):
         return False
     rows, shifted = system.STATE.rows(name), solution.state[:, :1].copy()
-    shifted[rows] += np.tile([0.3, -0.2, 0.5], 3)[:, None]
+    shifted[rows] += np.tile([0.3, -0.2, 0.5][:width], width)[:, None]
     try:
         rates, others = (
             np.asarray(system.rhs(each, solution.parameters, target="numpy"))
