@@ -4,8 +4,7 @@
 
 What a page of a system shows is what commands of coadjoint print; its picture is that of its
 document. It is made once for each state of the engine and of the spec, and kept in build/site-made.
-Any warning is an error: a link without an
-end, an anchor that is not there, an example that fails.
+Any warning is an error: a link without an end, an anchor that is not there, an example that fails.
 """
 
 from __future__ import annotations

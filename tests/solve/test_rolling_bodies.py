@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from coadjoint.solve.plot import draw
-from coadjoint.solve.rolling_bodies import CAP, COLUMNS, ROWS, draw_rolling, find_rolling
+from coadjoint.solve.rolling_bodies import (
+    CAP,
+    COLUMNS,
+    ROWS,
+    _count_cap,
+    draw_rolling,
+    find_rolling,
+)
 from coadjoint.systems import chaplygin_ball, euler_disk, rattleback, roller_racer
 
 CENTRE = np.array([0.1, 0.2, 0.3])
@@ -119,6 +126,20 @@ def test_the_cap_is_where_the_third_axis_leaves_the_body(ball):
     assert count_orange(draw_last(roll(euler_disk))) == 0
     flat = {"surface": find_rolling(ball).surface * np.array([1, 1, 1e-3])[:, None, None]}
     assert count_orange(draw_last(ball, lambda body: replace(body, **flat))) == 0
+
+
+@pytest.mark.parametrize(
+    ("widths", "count"),
+    [(np.sin(np.linspace(0, np.pi, 31)), CAP), ([1.0] * 28 + [0.9, 0.3, 0.0], 1)],
+    ids=["ball", "flat top"],
+)
+def test_the_cap_is_at_most_half_as_wide_as_the_body(widths, count):
+    """Of a ball it has all its rings, 24 degrees; of a body whose top is three rings, the inner."""
+    angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+    circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle])
+    surface = np.asarray(widths)[None, :, None] * circle[:, None, :]
+    assert _count_cap(surface) == count
+    assert widths[-1 - count] <= 0.5
 
 
 def test_no_body_is_cut_at_the_border_of_its_box(ball):
