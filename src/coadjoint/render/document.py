@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from itertools import groupby
 from typing import Any, Final
@@ -344,8 +344,12 @@ def tabulate(rows: Sequence[Sequence[Mapping[str, str]]], width: int = WIDTH) ->
     cell = max(len(text) for row in (heads, *others) for text in row[1:])
     number = (width - INDENT - first - len("  |")) // (cell + 1)
     if number < 1:
-        named = [(f"{row[0]}, {head}", text) for row in others for head, text in _pair(heads, row)]
-        told = [f"{place}: {text}" for place, text in named if text not in ("0", ".")]
+        told = [
+            f"{row[0]}, {head}: {text}"
+            for row in others
+            for head, text in zip(heads[1:], row[1:], strict=True)
+            if text not in ("0", ".")
+        ]
         return [line for each in told for line in wrap(each, 4, width - INDENT)]
     listed = list[str]()
     for start in range(1, len(heads), number):
@@ -357,11 +361,6 @@ def tabulate(rows: Sequence[Sequence[Mapping[str, str]]], width: int = WIDTH) ->
         rule = "-" * (first + 2) + "+" + "-" * (len(texts[0]) - first - 3)
         listed += [*([""] if listed else []), texts[0], rule, *texts[1:]]
     return listed
-
-
-def _pair(heads: Sequence[str], row: Sequence[str]) -> Iterable[tuple[str, str]]:
-    """The entries of a row behind its head, each with the head of its column."""
-    return zip(heads[1:], row[1:], strict=True)
 
 
 def describe(words: Sequence[Sequence[str]], width: int = WIDTH) -> list[str]:
